@@ -1,0 +1,41 @@
+# Compiler settings for our own code: warnings are errors, one instruction set for all rooms, optional sanitizers.
+#
+#   PLUMBLINE_ARCH      value of -march ("x86-64-v3" by default; "native"; empty for the compiler's own baseline)
+#   PLUMBLINE_SANITIZE  value of -fsanitize (set by the sanitizer presets)
+
+if(NOT CMAKE_BUILD_TYPE)
+    set(CMAKE_BUILD_TYPE Release CACHE STRING "Release, Debug or RelWithDebInfo" FORCE)
+endif()
+
+find_program(CCACHE ccache)
+if(CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+    set(CMAKE_C_COMPILER_LAUNCHER ${CCACHE})
+    set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE})
+endif()
+
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+    set(PLUMBLINE_ARCH "x86-64-v3" CACHE STRING "Value of -march; empty for the compiler's baseline")
+else()
+    set(PLUMBLINE_ARCH "" CACHE STRING "Value of -march; empty for the compiler's baseline")
+endif()
+set(PLUMBLINE_SANITIZE "" CACHE STRING "Value of -fsanitize; empty for none")
+
+add_library(plumbline_compiler INTERFACE)
+target_compile_options(plumbline_compiler INTERFACE
+    -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wcast-align -Woverloaded-virtual -Werror)
+if(PLUMBLINE_ARCH)
+    target_compile_options(plumbline_compiler INTERFACE -march=${PLUMBLINE_ARCH})
+endif()
+if(PLUMBLINE_SANITIZE)
+    target_compile_options(plumbline_compiler INTERFACE -fsanitize=${PLUMBLINE_SANITIZE} -fno-omit-frame-pointer)
+    target_link_options(plumbline_compiler INTERFACE -fsanitize=${PLUMBLINE_SANITIZE})
+endif()
+
+# plumbline_room(NAME sources... [LIBRARIES libs...])
+# One static library per room, called plumbline_NAME; files include each other as "room/file.h".
+function(plumbline_room name)
+    cmake_parse_arguments(ROOM "" "" "LIBRARIES" ${ARGN})
+    add_library(plumbline_${name} STATIC ${ROOM_UNPARSED_ARGUMENTS})
+    target_include_directories(plumbline_${name} PUBLIC ${CMAKE_SOURCE_DIR})
+    target_link_libraries(plumbline_${name} PUBLIC ${ROOM_LIBRARIES} PRIVATE plumbline_compiler)
+endfunction()

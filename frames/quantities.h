@@ -1,0 +1,41 @@
+// What is asked for: the parameters of the quantities that method and truth are compared on. Both renderers are always
+// given the same ones, so that a radius or a falloff can never differ between them.
+#pragma once
+
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace plumb {
+
+// How an occluder at distance d counts towards ambient visibility within radius r; zero from r on.
+enum class Falloff {
+    hard,       // 1
+    quadratic,  // 1 - d^2/r^2
+    cubic,      // (1 - d^2/r^2)^3
+};
+
+float evaluate_falloff(Falloff falloff, float distance, float radius);
+std::string_view to_string(Falloff falloff);
+Falloff falloff_from_string(std::string_view name);  // throws ImageError that lists the names
+
+struct Quantities {
+    // Planes wanted, by name: "ao", "direct", "indirect", "indirect.1".., "irradiance", "emission", "total", and the
+    // G-buffer's "depth", "normal", "albedo", "motion", "layer2.depth"... A renderer computes these and nothing else.
+    std::vector<std::string> planes;
+
+    float ao_radius = 1.0f;  // metres; infinity: the whole hemisphere
+    Falloff ao_falloff = Falloff::quadratic;
+
+    int bounces = 1;  // diffuse bounces K that indirect, irradiance and total contain
+    // Metres: light that arrives at a shaded point from farther away than this does not count as indirect. Infinity: all
+    // (what a user wants); the method's radius: what the method tried.
+    float indirect_radius = std::numeric_limits<float>::infinity();
+
+    bool wants(std::string_view plane) const;
+    // True where any wanted plane is `prefix` itself or begins with `prefix` and a dot.
+    bool wants_any(std::string_view prefix) const;
+};
+
+}  // namespace plumb

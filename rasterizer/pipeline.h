@@ -1,0 +1,57 @@
+// The real-time side: a list of passes that renders the wanted planes of a view with a method.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "frames/frame.h"
+#include "frames/quantities.h"
+#include "rasterizer/method.h"
+#include "scenes/camera.h"
+#include "scenes/scene.h"
+
+namespace plumb {
+
+class GlContext;
+
+struct PassTiming {
+    std::string pass;
+    double milliseconds = 0.0;
+};
+
+struct PassDecision {
+    std::string pass;
+    bool runs = false;
+    std::string reason;
+};
+
+struct RasterResult {
+    Frame frame;                      // the wanted planes
+    std::vector<PassTiming> timings;  // in the order of execution; what was read back is not timed
+    double milliseconds = 0.0;        // their sum
+};
+
+class Pipeline {
+public:
+    // Compiles and allocates only the passes whose outputs are wanted. Throws MethodError for parameters that cannot be
+    // combined or that would change nothing.
+    Pipeline(GlContext& context, const Scene& scene, const Method& method, const Quantities& quantities, int width,
+             int height);
+    ~Pipeline();
+
+    // Each pass, whether it runs, and why.
+    const std::vector<PassDecision>& decisions() const;
+
+    // Renders one frame. `previous` is the view of the frame before (for motion vectors), `truth` the frame whose planes
+    // feed the stages that the method takes from the truth.
+    RasterResult render(const View& view, const View* previous = nullptr, const Frame* truth = nullptr);
+    // Runs all passes once more, without reading anything back: for timing.
+    std::vector<PassTiming> time_passes(const View& view);
+
+private:
+    struct Implementation;
+    std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace plumb

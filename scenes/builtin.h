@@ -1,0 +1,20 @@
+// Scenes made by code, so that the program is useful with no file at all.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scenes/scene.h"
+
+namespace plumb {
+
+// The measured Cornell box (Cornell University Program of Computer Graphics, "Cornell Box Data"), in metres.
+Scene make_cornell();
+
+// Names of all built-in scenes.
+std::vector<std::string> builtin_scene_names();
+// Throws SceneError that lists the names there are.
+Scene make_builtin_scene(std::string_view name);
+
+}  // namespace plumb

@@ -1,0 +1,104 @@
+#include <array>
+#include <cstring>
+#include <memory>
+#include <vector>
+
+#include <xxhash.h>
+
+#include "scenes/scene.h"
+
+namespace plumb {
+namespace {
+
+// Feeds values field by field (never whole structs, whose padding bytes are arbitrary) into one XXH3 stream.
+class Hasher {
+public:
+    Hasher() : state_(XXH3_createState(), XXH3_freeState) { XXH3_64bits_reset(state_.get()); }
+
+    template <typename T>
+    void add(const T& value) {
+        static_assert(std::is_arithmetic_v<T> || std::is_enum_v<T>);
+        XXH3_64bits_update(state_.get(), &value, sizeof value);
+    }
+    template <int size, typename T>
+    void add(const glm::vec<size, T>& value) {
+        XXH3_64bits_update(state_.get(), &value, sizeof value);
+    }
+    void add(const glm::mat4& value) { XXH3_64bits_update(state_.get(), &value, sizeof value); }
+    template <typename T>
+    void add(const std::vector<T>& values) {
+        static_assert(std::is_trivially_copyable_v<T>);
+        add(values.size());
+        XXH3_64bits_update(state_.get(), values.data(), values.size() * sizeof(T));
+    }
+    std::uint64_t digest() const { return XXH3_64bits_digest(state_.get()); }
+
+private:
+    std::unique_ptr<XXH3_state_t, decltype(&XXH3_freeState)> state_;
+};
+
+}  // namespace
+
+std::uint64_t Scene::content_hash() const {
+    Hasher hasher;
+    hasher.add(meshes.size());
+    for (const Mesh& mesh : meshes) {
+        hasher.add(mesh.positions);
+        hasher.add(mesh.normals);
+        hasher.add(mesh.uvs);
+        hasher.add(mesh.triangles);
+        hasher.add(mesh.material);
+    }
+    hasher.add(instances.size());
+    for (const Instance& instance : instances) {
+        hasher.add(instance.mesh);
+        hasher.add(instance.world_from_object);
+    }
+    hasher.add(materials.size());
+    for (const Material& material : materials) {
+        hasher.add(material.base_colour);
+        hasher.add(material.base_colour_texture);
+        hasher.add(material.metallic);
+        hasher.add(material.roughness);
+        hasher.add(material.metallic_roughness_texture);
+        hasher.add(material.emission);
+        hasher.add(material.emission_texture);
+        hasher.add(material.alpha_mask);
+        hasher.add(material.alpha_cutoff);
+        hasher.add(material.alpha_texture);
+        hasher.add(material.alpha_channel);
+        hasher.add(material.two_sided);
+    }
+    hasher.add(textures.size());
+    for (const Texture& texture : textures) {
+        hasher.add(texture.width);
+        hasher.add(texture.height);
+        hasher.add(texture.wrap_u);
+        hasher.add(texture.wrap_v);
+        hasher.add(texture.texels);
+    }
+    hasher.add(point_lights.size());
+    for (const PointLight& light : point_lights) {
+        hasher.add(light.position);
+        hasher.add(light.intensity);
+    }
+    hasher.add(spot_lights.size());
+    for (const SpotLight& light : spot_lights) {
+        hasher.add(light.position);
+        hasher.add(light.direction);
+        hasher.add(light.intensity);
+        hasher.add(light.inner_angle);
+        hasher.add(light.outer_angle);
+    }
+    hasher.add(directional_lights.size());
+    for (const DirectionalLight& light : directional_lights) {
+        hasher.add(light.direction);
+        hasher.add(light.irradiance);
+    }
+    hasher.add(environment.radiance);
+    hasher.add(environment.texture);
+    hasher.add(environment.rotation);
+    return hasher.digest();
+}
+
+}  // namespace plumb

@@ -1,0 +1,92 @@
+#include "scenes/scene.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "scenes/scene_error.h"
+
+namespace plumb {
+namespace {
+
+template <typename Named>
+const Named& find_by_name(const std::vector<Named>& items, std::string_view name, std::string_view kind,
+                          std::string_view scene) {
+    std::vector<std::string> names;
+    for (const Named& item : items) {
+        if (item.name == name) return item;
+        names.push_back(item.name);
+    }
+    throw SceneError(fmt::format("scene '{}' has no {} '{}'; it has: {}", scene, kind, name,
+                                 names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
+}
+
+}  // namespace
+
+const Camera& Scene::camera(std::string_view camera_name) const {
+    return find_by_name(cameras, camera_name, "view", name);
+}
+
+const CameraPath& Scene::path(std::string_view path_name) const {
+    return find_by_name(paths, path_name, "camera path", name);
+}
+
+std::size_t Scene::triangle_count() const {
+    std::size_t count = 0;
+    for (const Instance& instance : instances) count += meshes[instance.mesh].triangles.size();
+    return count;
+}
+
+Bounds Scene::bounds() const {
+    Bounds bounds;
+    for (const Instance& instance : instances) {
+        for (const glm::vec3& p : meshes[instance.mesh].positions) {
+            bounds.add(glm::vec3(instance.world_from_object * glm::vec4(p, 1.0f)));
+        }
+    }
+    return bounds;
+}
+
+bool Scene::has_emissive_surfaces() const {
+    for (const Instance& instance : instances) {
+        if (materials[meshes[instance.mesh].material].is_emissive()) return true;
+    }
+    return false;
+}
+
+SurfaceSample Scene::surface(const Material& material, glm::vec2 uv) const {
+    SurfaceSample sample;
+    sample.base_colour = material.base_colour;
+    if (material.base_colour_texture != no_texture) {
+        sample.base_colour *= glm::vec3(textures[material.base_colour_texture].sample(uv));
+    }
+    sample.metallic = material.metallic;
+    sample.roughness = material.roughness;
+    if (material.metallic_roughness_texture != no_texture) {
+        const glm::vec4 texel = textures[material.metallic_roughness_texture].sample(uv);
+        sample.roughness *= texel.y;
+        sample.metallic *= texel.z;
+    }
+    sample.emission = material.emission;
+    if (material.emission_texture != no_texture) {
+        sample.emission *= glm::vec3(textures[material.emission_texture].sample(uv));
+    }
+    sample.albedo = sample.base_colour * (1.0f - sample.metallic);
+    return sample;
+}
+
+bool Scene::is_opaque(const Material& material, glm::vec2 uv) const {
+    if (!material.alpha_mask) return true;
+    if (material.alpha_texture != no_texture) {
+        return textures[material.alpha_texture].sample(uv)[material.alpha_channel] >= material.alpha_cutoff;
+    }
+    if (material.base_colour_texture == no_texture) return true;
+    return textures[material.base_colour_texture].sample(uv).w >= material.alpha_cutoff;
+}
+
+glm::vec3 Scene::environment_radiance(const glm::vec3& direction) const {
+    if (environment.texture == no_texture) return environment.radiance;
+    const glm::vec2 uv = environment.texture_coordinates(direction);
+    return environment.radiance * glm::vec3(textures[environment.texture].sample(uv));
+}
+
+}  // namespace plumb

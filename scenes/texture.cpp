@@ -1,0 +1,46 @@
+#include "scenes/texture.h"
+
+#include <cmath>
+
+namespace plumb {
+namespace {
+
+int wrapped(int i, int size, TextureWrap wrap) {
+    switch (wrap) {
+        case TextureWrap::clamp:
+            return i < 0 ? 0 : i >= size ? size - 1 : i;
+        case TextureWrap::mirror: {
+            const int m = ((i % (2 * size)) + 2 * size) % (2 * size);
+            return m < size ? m : 2 * size - 1 - m;
+        }
+        case TextureWrap::repeat:
+            break;
+    }
+    return ((i % size) + size) % size;
+}
+
+}  // namespace
+
+glm::vec4 Texture::sample(glm::vec2 uv) const {
+    // Whole turns are taken off first, in float, so that large coordinates keep their fraction and never overflow int.
+    const auto to_texel = [](float t, int size, TextureWrap wrap) {
+        if (wrap == TextureWrap::repeat) t -= std::floor(t);
+        if (wrap == TextureWrap::mirror) t -= 2.0f * std::floor(0.5f * t);
+        if (wrap == TextureWrap::clamp) t = t < 0.0f ? 0.0f : t > 1.0f ? 1.0f : t;
+        return t * static_cast<float>(size) - 0.5f;
+    };
+    const float x = to_texel(uv.x, width, wrap_u), y = to_texel(uv.y, height, wrap_v);
+    const float x_floor = std::floor(x), y_floor = std::floor(y);
+    const float fx = x - x_floor, fy = y - y_floor;
+    const int x0 = wrapped(static_cast<int>(x_floor), width, wrap_u);
+    const int x1 = wrapped(static_cast<int>(x_floor) + 1, width, wrap_u);
+    const int y0 = wrapped(static_cast<int>(y_floor), height, wrap_v);
+    const int y1 = wrapped(static_cast<int>(y_floor) + 1, height, wrap_v);
+    const auto texel = [&](int i, int j) {
+        const half* t = &texels[4 * (static_cast<std::size_t>(j) * width + i)];
+        return glm::vec4(t[0], t[1], t[2], t[3]);
+    };
+    return glm::mix(glm::mix(texel(x0, y0), texel(x1, y0), fx), glm::mix(texel(x0, y1), texel(x1, y1), fx), fy);
+}
+
+}  // namespace plumb
