@@ -1,0 +1,8 @@
+#!/usr/bin/env bash
+# Installs what is missing and builds one preset: scripts/build.sh [release|debug|asan-ubsan|tsan]
+set -euo pipefail
+cd "$(dirname "$0")/.."
+preset=${1:-release}
+scripts/install-dependencies.sh
+cmake --preset "$preset" >"$(mktemp -d)/configure.log" 2>&1 || cmake --preset "$preset"
+cmake --build --preset "$preset"
