@@ -4,5 +4,5 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 preset=${1:-release}
 scripts/install-dependencies.sh
-cmake --preset "$preset" >"$(mktemp -d)/configure.log" 2>&1 || cmake --preset "$preset"
+cmake --preset "$preset" >/dev/null  # errors and warnings still show: they go to the standard error stream
 cmake --build --preset "$preset"
