@@ -25,24 +25,46 @@ struct DirectSettings {
     ShadowSettings shadow;
 };
 
+// The separable filter that smooths the noise of few taps along surfaces (bilateral_blur.h has the weights' formulas).
+struct BilateralBlurSettings {
+    int radius = 4;              // taps to each side; 0: no filter
+    int step = 1;                // pixels between taps
+    float depth_sharpness = 10;  // relative to the filtered quantity's radius: 10 rejects depths a tenth of it away
+    float normal_sharpness = 1;  // 1 rejects normals 90 degrees apart, 40 those 13 degrees apart
+    float plane_sharpness = 1;   // rejects points off the centre's tangent plane
+    bool monotonic = true;       // a weight never rises again beyond an edge
+};
+
+// Which formula turns taps into ambient visibility; each is named after its source (ambient_obscurance.h has them).
+enum class AmbientObscuranceEstimator { mara2016, g3d_demo, sao2012, linear };
+
 struct AmbientObscuranceSettings {
     bool enabled = true;
-    int samples = 16;          // taps per pixel, 1..1000
-    int layers = 2;            // 1 or 2, at most those of the G-buffer
-    float bias = 0.01f;        // metres; hides self-occlusion on flat surfaces
-    bool use_mip_chain = true; // reads coarser depth for far taps: constant cost over radius
+    AmbientObscuranceEstimator estimator = AmbientObscuranceEstimator::mara2016;
+    int samples = 16;        // taps per pixel, 1..1000
+    int layers = 2;          // 1 or 2, at most those of the G-buffer
+    float bias = 0.01f;      // metres; hides self-occlusion on flat surfaces
+    float epsilon = 0.001f;  // square metres; keeps the division by the tap's distance finite
     float intensity = 1.0f;
-    int blur_radius = 4;       // taps to each side of the separable bilateral filter; 0: none
+    bool use_mip_chain = true;  // reads coarser depth for far taps: constant cost over radius
+    int mip_offset = 3;         // a tap r' pixels away reads level floor(log2 r') - mip_offset
+    BilateralBlurSettings blur;
 };
+
+// What the sum over the taps is divided by: the taps that hit (as the paper), or all of them.
+enum class RadiosityNormalisation { hits, samples };
 
 struct RadiositySettings {
     bool enabled = true;
-    int samples = 32;          // taps per pixel
-    int layers = 2;
-    float radius = 1.0f;       // metres
+    int samples = 32;             // taps per pixel, 1..1000
+    int layers = 2;               // 1 or 2, at most those of the G-buffer
+    float radius = 1.0f;          // metres
     bool test_tap_normal = true;  // taps must face the receiver
+    RadiosityNormalisation normalisation = RadiosityNormalisation::hits;
     bool use_mip_chain = true;
-    int blur_radius = 4;
+    int mip_offset = 4;         // a tap r' pixels away reads level floor(log2 r') - mip_offset
+    int minimum_mip_level = 0;  // 0..5; higher is faster and noisier
+    BilateralBlurSettings blur = {.depth_sharpness = 0, .normal_sharpness = 40, .plane_sharpness = 0.5f};
 };
 
 // Radius and falloff of ambient visibility are not here: they belong to the quantity that is asked for (Quantities).
