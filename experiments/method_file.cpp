@@ -1,0 +1,311 @@
+#include "experiments/method_file.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <filesystem>
+#include <limits>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+#include "embedded/methods.h"
+
+namespace plumb {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr std::array embedded_method_files = {"one_layer.toml", "two_layers.toml"};
+
+// The members of a table with their dotted names; `name` and `base` are the method's own.
+void collect_leaves(const ConfigMembers& members, const std::string& prefix,
+                    std::vector<std::pair<std::string, const ConfigValue*>>& leaves) {
+    for (const auto& [key, value] : members) {
+        const std::string name = prefix.empty() ? key : fmt::format("{}.{}", prefix, key);
+        if (const auto* table = std::get_if<ConfigMembers>(&value.value)) {
+            collect_leaves(*table, name, leaves);
+        } else if (!prefix.empty() || (key != "name" && key != "base")) {
+            leaves.emplace_back(name, &value);
+        }
+    }
+}
+
+template <class Enumeration>
+MethodChoice choice(Enumeration& value, std::vector<std::string> names) {
+    return {std::move(names), [&value] { return static_cast<int>(value); },
+            [&value](int index) { value = static_cast<Enumeration>(index); }};
+}
+
+void add_blur(std::vector<MethodParameter>& parameters, const std::string& prefix, BilateralBlurSettings& blur) {
+    parameters.insert(parameters.end(), {
+                                            {prefix + "radius", &blur.radius, 0, 64},
+                                            {prefix + "step", &blur.step, 1, 64},
+                                            {prefix + "depth_sharpness", &blur.depth_sharpness, 0, 1e6},
+                                            {prefix + "normal_sharpness", &blur.normal_sharpness, 0, 1e6},
+                                            {prefix + "plane_sharpness", &blur.plane_sharpness, 0, 1e6},
+                                            {prefix + "monotonic", &blur.monotonic},
+                                        });
+}
+
+// Stores `value` in the parameter; returns what is wrong with it, or nothing.
+std::string store(const MethodParameter& parameter, const ConfigValue& value) {
+    const auto in_range = [&](double number) { return number >= parameter.least && number <= parameter.most; };
+    const auto range_text = [&](double number) {
+        return fmt::format("is {}, but must be {} to {}", number, parameter.least, parameter.most);
+    };
+    if (bool* const* target = std::get_if<bool*>(&parameter.value)) {
+        const bool* boolean = std::get_if<bool>(&value.value);
+        if (!boolean) return fmt::format("must be true or false, but is {}", value.type_name());
+        **target = *boolean;
+    } else if (int* const* whole = std::get_if<int*>(&parameter.value)) {
+        const auto* integer = std::get_if<std::int64_t>(&value.value);
+        if (!integer) return fmt::format("must be a whole number, but is {}", value.type_name());
+        if (!in_range(static_cast<double>(*integer))) return range_text(static_cast<double>(*integer));
+        **whole = static_cast<int>(*integer);
+    } else if (float* const* floating = std::get_if<float*>(&parameter.value)) {
+        double number = 0.0;
+        if (const auto* integer = std::get_if<std::int64_t>(&value.value)) {
+            number = static_cast<double>(*integer);
+        } else if (const auto* given = std::get_if<double>(&value.value)) {
+            number = *given;
+        } else {
+            return fmt::format("must be a number, but is {}", value.type_name());
+        }
+        if (!in_range(number)) return range_text(number);
+        **floating = static_cast<float>(number);
+    } else {
+        const auto& choice = std::get<MethodChoice>(parameter.value);
+        const auto* text = std::get_if<std::string>(&value.value);
+        if (!text)
+            return fmt::format("must be one of \"{}\", but is {}", fmt::join(choice.names, "\", \""),
+                               value.type_name());
+        const auto found = std::ranges::find(choice.names, *text);
+        if (found == choice.names.end())
+            return fmt::format("unknown value \"{}\"; {}", *text, name_hint(*text, choice.names));
+        choice.set(static_cast<int>(found - choice.names.begin()));
+    }
+    return "";
+}
+
+void store_leaf(Method& method, const std::string& name, const ConfigValue& value, const std::string& source) {
+    for (const MethodParameter& parameter : method_parameters(method)) {
+        if (parameter.name != name) continue;
+        const std::string problem = store(parameter, value);
+        if (!problem.empty()) throw ConfigError(fmt::format("{}:{}: {}: {}", source, value.line, name, problem));
+        return;
+    }
+    throw ConfigError(fmt::format("{}:{}: {}: unknown method parameter; {}", source, value.line, name,
+                                  name_hint(name, method_parameter_names())));
+}
+
+}  // namespace
+
+std::vector<MethodParameter> method_parameters(Method& m) {
+    const std::vector<std::string> sources = {"method", "truth"};
+    std::vector<MethodParameter> parameters = {
+        {"gbuffer.source", choice(m.gbuffer.source, sources)},
+        {"gbuffer.layers", &m.gbuffer.layers, 1, 2},
+        {"gbuffer.minimum_separation", &m.gbuffer.minimum_separation, 0, 1e6},
+        {"gbuffer.guard_band", &m.gbuffer.guard_band, 0, 4096},
+        {"direct.source", choice(m.direct.source, sources)},
+        {"direct.shadow.cube_size", &m.direct.shadow.cube_size, 16, 8192},
+        {"direct.shadow.map_size", &m.direct.shadow.map_size, 16, 16384},
+        {"direct.shadow.bias", &m.direct.shadow.bias, 0, 1e3},
+        {"ao.enabled", &m.ao.enabled},
+        {"ao.estimator", choice(m.ao.estimator, {"mara2016", "g3d_demo", "sao2012", "linear"})},
+        {"ao.samples", &m.ao.samples, 1, 1000},
+        {"ao.layers", &m.ao.layers, 1, 2},
+        {"ao.bias", &m.ao.bias, 0, 1e3},
+        {"ao.epsilon", &m.ao.epsilon, 0, 1e3},
+        {"ao.intensity", &m.ao.intensity, 0, 100},
+        {"ao.use_mip_chain", &m.ao.use_mip_chain},
+        {"ao.mip_offset", &m.ao.mip_offset, 0, 16},
+    };
+    add_blur(parameters, "ao.blur.", m.ao.blur);
+    parameters.insert(parameters.end(),
+                      {
+                          {"radiosity.enabled", &m.radiosity.enabled},
+                          {"radiosity.samples", &m.radiosity.samples, 1, 1000},
+                          {"radiosity.layers", &m.radiosity.layers, 1, 2},
+                          {"radiosity.radius", &m.radiosity.radius, 1e-6, infinity},
+                          {"radiosity.test_tap_normal", &m.radiosity.test_tap_normal},
+                          {"radiosity.normalisation", choice(m.radiosity.normalisation, {"hits", "samples"})},
+                          {"radiosity.use_mip_chain", &m.radiosity.use_mip_chain},
+                          {"radiosity.mip_offset", &m.radiosity.mip_offset, 0, 16},
+                          {"radiosity.minimum_mip_level", &m.radiosity.minimum_mip_level, 0, 5},
+                      });
+    add_blur(parameters, "radiosity.blur.", m.radiosity.blur);
+    return parameters;
+}
+
+std::vector<std::string> method_parameter_names() {
+    Method method;
+    std::vector<std::string> names;
+    for (const MethodParameter& parameter : method_parameters(method)) names.push_back(parameter.name);
+    return names;
+}
+
+const Method* find_method(const MethodList& methods, std::string_view name) {
+    const auto found = std::ranges::find(methods, name, &Method::name);
+    return found == methods.end() ? nullptr : &*found;
+}
+
+MethodList builtin_methods() {
+    MethodList methods;
+    for (const char* file : embedded_method_files) {
+        methods.push_back(parse_method(parse_config(embedded::methods::find(file), file), file, methods));
+    }
+    return methods;
+}
+
+Method parse_method(const ConfigValue& table, const std::string& source, const MethodList& known) {
+    ConfigReader reader(table, source, "method");
+    Method method;
+    const std::string base = reader.text("base", "");
+    if (!base.empty()) {
+        const Method* found = find_method(known, base);
+        if (!found) {
+            std::vector<std::string> names;
+            for (const Method& candidate : known) names.push_back(candidate.name);
+            reader.fail("base",
+                        fmt::format("no method '{}' is defined before this one; {}", base, name_hint(base, names)));
+        }
+        method = *found;
+    }
+    method.name = reader.required_text("name");
+
+    std::vector<std::pair<std::string, const ConfigValue*>> leaves;
+    collect_leaves(std::get<ConfigMembers>(table.value), "", leaves);
+    for (const auto& [name, value] : leaves) store_leaf(method, name, *value, source);
+    for (const auto& [name, value] : leaves) {
+        const std::string reason = reason_without_effect(method, name);
+        if (reason.empty()) continue;
+        throw ConfigError(fmt::format("{}:{}: {}: has no effect in method '{}', because {}; remove it", source,
+                                      value->line, name, method.name, reason));
+    }
+    for (const auto& [name, layers] :
+         {std::pair{"ao", method.ao.enabled ? method.ao.layers : 1},
+          std::pair{"radiosity", method.radiosity.enabled ? method.radiosity.layers : 1}}) {
+        if (layers > method.gbuffer.layers) {
+            throw ConfigError(
+                fmt::format("{}:{}: {}.layers = {} cannot be combined with gbuffer.layers = {} (method '{}'); "
+                            "lower the one or raise the other",
+                            source, table.line, name, layers, method.gbuffer.layers, method.name));
+        }
+    }
+    return method;
+}
+
+Method load_method(const std::string& name_or_path) {
+    const MethodList builtin = builtin_methods();
+    if (const Method* found = find_method(builtin, name_or_path)) return *found;
+    if (std::filesystem::exists(name_or_path)) return parse_method(read_config(name_or_path), name_or_path, builtin);
+    std::vector<std::string> names;
+    for (const Method& method : builtin) names.push_back(method.name);
+    throw ConfigError(fmt::format("method '{}': neither a file nor a method that comes with the program; {}",
+                                  name_or_path, name_hint(name_or_path, names)));
+}
+
+void set_method_parameter(Method& method, const std::string& assignment) {
+    const auto equals = assignment.find('=');
+    if (equals == std::string::npos) {
+        throw ConfigError(fmt::format("'{}': write a parameter as name=value, such as ao.samples=16", assignment));
+    }
+    const std::string name = assignment.substr(0, equals);
+    std::string value = assignment.substr(equals + 1);
+    // A shell eats quotes, so a bare word that is not TOML's own counts as a text.
+    const bool word = !value.empty() && std::isalpha(static_cast<unsigned char>(value[0])) && value != "true" &&
+                      value != "false" && value != "inf" && value != "nan";
+    if (word) value = fmt::format("\"{}\"", value);
+    const std::string source = fmt::format("'{}'", assignment);
+    const ConfigValue parsed = parse_config("value = " + value, source);
+    store_leaf(method, name, std::get<ConfigMembers>(parsed.value).front().second, source);
+    const std::string reason = reason_without_effect(method, name);
+    if (!reason.empty()) throw ConfigError(fmt::format("{}: has no effect, because {}", source, reason));
+}
+
+void override_method(Method& method, const ConfigValue& table, const std::string& source) {
+    const ConfigReader reader(table, source, "method");  // checks that it is a table
+    std::vector<std::pair<std::string, const ConfigValue*>> leaves;
+    collect_leaves(std::get<ConfigMembers>(table.value), "", leaves);
+    for (const auto& [name, value] : leaves) {
+        Method changed = method;
+        store_leaf(changed, name, *value, source);
+        if (reason_without_effect(changed, name).empty()) method = changed;
+    }
+}
+
+std::string reason_without_effect(const Method& method, std::string_view name) {
+    if (name.starts_with("ao.") && name != "ao.enabled" && !method.ao.enabled) return "ao.enabled = false";
+    if (name.starts_with("radiosity.") && name != "radiosity.enabled" && !method.radiosity.enabled) {
+        return "radiosity.enabled = false";
+    }
+    if (name.starts_with("direct.") && name != "direct.source" && method.direct.source == SourceOfStage::truth) {
+        return "direct.source = \"truth\"";
+    }
+    const auto blur_reason = [&](std::string_view group, const BilateralBlurSettings& blur) {
+        const bool off = name.starts_with(group) && name != fmt::format("{}radius", group) && blur.radius == 0;
+        return off ? fmt::format("{}radius = 0", group) : std::string();
+    };
+    if (const std::string reason = blur_reason("ao.blur.", method.ao.blur); !reason.empty()) return reason;
+    if (const std::string reason = blur_reason("radiosity.blur.", method.radiosity.blur); !reason.empty())
+        return reason;
+    if (!method.ao.use_mip_chain && name == "ao.mip_offset") return "ao.use_mip_chain = false";
+    if (!method.radiosity.use_mip_chain && (name == "radiosity.mip_offset" || name == "radiosity.minimum_mip_level")) {
+        return "radiosity.use_mip_chain = false";
+    }
+    if (name == "gbuffer.minimum_separation" && method.gbuffer.layers == 1) return "gbuffer.layers = 1";
+    return "";
+}
+
+std::string print_parameter(const MethodParameter& parameter) {
+    struct Printer {
+        std::string operator()(const bool* value) const { return *value ? "true" : "false"; }
+        std::string operator()(const int* value) const { return fmt::format("{}", *value); }
+        std::string operator()(const float* value) const {
+            const std::string text = fmt::format("{}", *value);  // the shortest text that reads back as the same float
+            return text.find_first_of(".einf") == std::string::npos ? text + ".0" : text;
+        }
+        std::string operator()(const MethodChoice& value) const {
+            return fmt::format("\"{}\"", value.names[value.get()]);
+        }
+    };
+    return std::visit(Printer{}, parameter.value);
+}
+
+std::string print_method(const Method& method) {
+    Method copy = method;
+    std::string text = fmt::format("name = \"{}\"\n", method.name);
+    for (const MethodParameter& parameter : method_parameters(copy)) {
+        const std::string line = fmt::format("{} = {}\n", parameter.name, print_parameter(parameter));
+        // A parameter without effect is printed as a comment, so that the text can be parsed again.
+        const std::string reason = reason_without_effect(copy, parameter.name);
+        text += reason.empty() ? line : fmt::format("# {}", line);
+    }
+    return text;
+}
+
+std::uint64_t method_hash(const Method& method) {
+    Method copy = method;
+    std::string text;
+    for (const MethodParameter& parameter : method_parameters(copy)) {
+        if (!reason_without_effect(copy, parameter.name).empty()) continue;
+        text += fmt::format("{} = {}\n", parameter.name, print_parameter(parameter));
+    }
+    return XXH3_64bits(text.data(), text.size());
+}
+
+std::vector<MethodDifference> diff_methods(const Method& first, const Method& second) {
+    Method a = first, b = second;
+    const auto of_first = method_parameters(a), of_second = method_parameters(b);
+    std::vector<MethodDifference> differences;
+    for (std::size_t i = 0; i < of_first.size(); ++i) {
+        MethodDifference difference{of_first[i].name, print_parameter(of_first[i]), print_parameter(of_second[i])};
+        if (difference.first != difference.second) differences.push_back(std::move(difference));
+    }
+    return differences;
+}
+
+}  // namespace plumb
