@@ -8,8 +8,8 @@
 namespace plumb {
 
 // Calls `write` with a temporary path beside `path` (same extension), flushes the result to disk and renames it to
-// `path`. Whatever `write` throws leaves an existing file at `path` as it was and no temporary file behind. Missing parent
-// folders are created. Throws ImageError with the system's reason (full disk, unwritable folder...).
+// `path`. Whatever `write` throws leaves an existing file at `path` as it was and no temporary file behind. Missing
+// parent folders are created. Throws ImageError with the system's reason (full disk, unwritable folder...).
 void write_atomically(const std::filesystem::path& path,
                       const std::function<void(const std::filesystem::path& temporary)>& write);
 

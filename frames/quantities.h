@@ -29,8 +29,8 @@ struct Quantities {
     Falloff ao_falloff = Falloff::quadratic;
 
     int bounces = 1;  // diffuse bounces K that indirect, irradiance and total contain
-    // Metres: light that arrives at a shaded point from farther away than this does not count as indirect. Infinity: all
-    // (what a user wants); the method's radius: what the method tried.
+    // Metres: light that arrives at a shaded point from farther away than this does not count as indirect. Infinity:
+    // all (what a user wants); the method's radius: what the method tried.
     float indirect_radius = std::numeric_limits<float>::infinity();
 
     bool wants(std::string_view plane) const;
