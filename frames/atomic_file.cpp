@@ -1,15 +1,14 @@
 #include "frames/atomic_file.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <system_error>
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "frames/image_error.h"
 
@@ -40,8 +39,8 @@ void write_atomically(const std::filesystem::path& path,
     if (!folder.empty()) std::filesystem::create_directories(folder, error);
     if (error) fail(path, fmt::format("creating folder '{}'", folder.string()), error.value());
 
-    const auto temporary = folder / fmt::format(".{}.{}-{}.tmp{}", path.stem().string(), ::getpid(), counter++,
-                                                path.extension().string());
+    const auto temporary =
+        folder / fmt::format(".{}.{}-{}.tmp{}", path.stem().string(), ::getpid(), counter++, path.extension().string());
     try {
         write(temporary);
         flush_to_disk(temporary, path);

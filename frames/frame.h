@@ -26,8 +26,9 @@ public:
     Image& set(std::string name, Image image);
     bool has(std::string_view name) const;
     // Throws ImageError that lists the planes there are.
-    const Image& plane(std::string_view name) const;
-    Image& plane(std::string_view name);
+    const Image& plane(std::string_view name) const&;
+    Image& plane(std::string_view name) &;
+    Image plane(std::string_view name) &&;  // of a frame about to vanish: the plane itself
     std::vector<std::string> plane_names() const;
 
     // Free-form facts that travel with the frame into its file: scene, view, method, samples, seed, renderer...

@@ -13,18 +13,24 @@ float evaluate_falloff(Falloff falloff, float distance, float radius) {
     const float ratio = distance / radius;  // 0 for an infinite radius
     const float quadratic = 1.0f - ratio * ratio;
     switch (falloff) {
-        case Falloff::hard: return 1.0f;
-        case Falloff::quadratic: return quadratic;
-        case Falloff::cubic: return quadratic * quadratic * quadratic;
+        case Falloff::hard:
+            return 1.0f;
+        case Falloff::quadratic:
+            return quadratic;
+        case Falloff::cubic:
+            return quadratic * quadratic * quadratic;
     }
     return 0.0f;
 }
 
 std::string_view to_string(Falloff falloff) {
     switch (falloff) {
-        case Falloff::hard: return "hard";
-        case Falloff::quadratic: return "quadratic";
-        case Falloff::cubic: return "cubic";
+        case Falloff::hard:
+            return "hard";
+        case Falloff::quadratic:
+            return "quadratic";
+        case Falloff::cubic:
+            return "cubic";
     }
     return "";
 }
@@ -40,7 +46,8 @@ bool Quantities::wants(std::string_view plane) const { return std::ranges::find(
 
 bool Quantities::wants_any(std::string_view prefix) const {
     return std::ranges::any_of(planes, [&](const std::string& plane) {
-        return plane == prefix || (plane.starts_with(prefix) && plane.size() > prefix.size() && plane[prefix.size()] == '.');
+        return plane == prefix ||
+               (plane.starts_with(prefix) && plane.size() > prefix.size() && plane[prefix.size()] == '.');
     });
 }
 
