@@ -11,6 +11,10 @@ namespace plumb {
 
 // The measured Cornell box (Cornell University Program of Computer Graphics, "Cornell Box Data"), in metres.
 Scene make_cornell();
+// An atrium with columns, arches, vaults, curtains, masked grilles and plants under the open sky; what Sponza shows.
+Scene make_colonnade();
+// A room full of thin gaps and of occluders just off its walls, where one depth layer fails.
+Scene make_clutter();
 
 // Names of all built-in scenes.
 std::vector<std::string> builtin_scene_names();

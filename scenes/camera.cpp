@@ -15,9 +15,10 @@ Camera Camera::look_at(std::string name, const glm::vec3& eye, const glm::vec3& 
     const glm::vec3 right = glm::cross(up, backward);
     // Below 1e-6 of their product the cross product of float vectors is rounding noise and would give a random roll.
     if (!(glm::length(right) > 1e-6f * glm::length(up) * glm::length(backward))) {
-        throw SceneError(fmt::format("camera '{}': eye ({}, {}, {}) and target ({}, {}, {}) coincide or lie along the up "
-                                     "direction; move one of them",
-                                     name, eye.x, eye.y, eye.z, target.x, target.y, target.z));
+        throw SceneError(
+            fmt::format("camera '{}': eye ({}, {}, {}) and target ({}, {}, {}) coincide or lie along the up "
+                        "direction; move one of them",
+                        name, eye.x, eye.y, eye.z, target.x, target.y, target.z));
     }
     const glm::vec3 z = glm::normalize(backward);
     const glm::vec3 x = glm::normalize(right);

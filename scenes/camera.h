@@ -1,7 +1,7 @@
 // The camera, and the one map between pixels, rays and points that both renderers share.
 //
-// Right-handed world in metres, +Y up; a camera looks down its own -Z. Pixel (i, j) counts from the top left and is seen
-// through its centre (i + 0.5, j + 0.5).
+// Right-handed world in metres, +Y up; a camera looks down its own -Z. Pixel (i, j) counts from the top left and is
+// seen through its centre (i + 0.5, j + 0.5).
 #pragma once
 
 #include <string>
@@ -18,10 +18,10 @@ struct Ray {
 // Where a camera stands and how wide it sees; a resolution makes it a View.
 struct Camera {
     std::string name;
-    glm::mat4 world_from_camera{1.0f};   // rigid: rotation and translation only
-    float vertical_fov = 0.8726646f;     // radians (50 degrees)
-    float near_plane = 0.1f;             // metres; what the rasterizer clips, and the path tracer as well
-    float far_plane = 200.0f;            // metres
+    glm::mat4 world_from_camera{1.0f};  // rigid: rotation and translation only
+    float vertical_fov = 0.8726646f;    // radians (50 degrees)
+    float near_plane = 0.1f;            // metres; what the rasterizer clips, and the path tracer as well
+    float far_plane = 200.0f;           // metres
 
     // A camera at `eye` that looks at `target`, upright with respect to `up`. Throws SceneError where eye and target
     // coincide or the view direction is parallel to `up`.
@@ -56,9 +56,9 @@ public:
     // Half the width and height of the view at 1 m depth.
     glm::vec2 tan_half() const { return {tan_half_width_, tan_half_height_}; }
 
-    // Clip coordinates from camera space for OpenGL with glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE) and reversed depth
-    // (near = 1, far = 0), which keeps float depth equally precise over the whole range. NDC +Y is up: image row j is
-    // framebuffer row height - 1 - j.
+    // Clip coordinates from camera space for OpenGL with glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE) and reversed
+    // depth (near = 1, far = 0), which keeps float depth equally precise over the whole range. NDC +Y is up: image row
+    // j is framebuffer row height - 1 - j.
     glm::mat4 clip_from_camera() const;
 
 private:

@@ -14,8 +14,8 @@ struct CameraKey {
     glm::vec3 target{0.0f, 0.0f, -1.0f};
 };
 
-// Eye and target follow a Catmull-Rom curve through the keys, with tangents scaled to the keys' times, so that the speed is
-// continuous. Before the first key and after the last the camera stands still.
+// Eye and target follow a Catmull-Rom curve through the keys, with tangents scaled to the keys' times, so that the
+// speed is continuous. Before the first key and after the last the camera stands still.
 struct CameraPath {
     std::string name;
     float vertical_fov = 0.8726646f;  // radians

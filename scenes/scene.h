@@ -20,10 +20,10 @@ namespace plumb {
 struct Mesh {
     std::string name;
     std::vector<glm::vec3> positions;
-    std::vector<glm::vec3> normals;  // empty: face normals; else unit length, one per position
-    std::vector<glm::vec2> uvs;      // empty: (0, 0); else one per position
+    std::vector<glm::vec3> normals;     // empty: face normals; else unit length, one per position
+    std::vector<glm::vec2> uvs;         // empty: (0, 0); else one per position
     std::vector<glm::uvec3> triangles;  // counter-clockwise seen from the side that the normals point to
-    int material = 0;                // index into Scene::materials
+    int material = 0;                   // index into Scene::materials
 };
 
 struct Instance {
@@ -79,7 +79,8 @@ struct Scene {
     // Radiance of the environment from unit `direction`.
     glm::vec3 environment_radiance(const glm::vec3& direction) const;
 
-    // A 64-bit hash of everything that can change a pixel: geometry, materials, texels, lights; not cameras, paths, names.
+    // A 64-bit hash of everything that can change a pixel: geometry, materials, texels, lights; not cameras, paths,
+    // names.
     std::uint64_t content_hash() const;
 };
 

@@ -5,15 +5,14 @@
 #include <vector>
 
 #include <Imath/half.h>
-
 #include <glm/glm.hpp>
 
 namespace plumb {
 
 enum class TextureWrap { repeat, clamp, mirror };
 
-// Linear RGBA texels in half floats, row-major, first row at v = 0 (as glTF: v grows downwards in the picture). Half floats
-// keep 8-bit sRGB input exactly distinguishable and are the same bits on the CPU and in OpenGL.
+// Linear RGBA texels in half floats, row-major, first row at v = 0 (as glTF: v grows downwards in the picture). Half
+// floats keep 8-bit sRGB input exactly distinguishable and are the same bits on the CPU and in OpenGL.
 struct Texture {
     std::string name;
     int width = 0, height = 0;
