@@ -9,6 +9,10 @@
 
 namespace plumb {
 
+bool is_derived_plane(std::string_view name) {
+    return name.starts_with("half_a.") || name.starts_with("half_b.") || name.starts_with("variance.");
+}
+
 Image& Frame::set(std::string name, Image image) {
     if (image.width() != width_ || image.height() != height_) {
         throw ImageError(fmt::format("plane '{}' is {}x{}, but its frame is {}x{}", name, image.width(), image.height(),

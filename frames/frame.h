@@ -14,6 +14,9 @@
 
 namespace plumb {
 
+// True for planes that say something about another plane: half_a.*, half_b.* and variance.*.
+bool is_derived_plane(std::string_view name);
+
 class Frame {
 public:
     Frame() = default;

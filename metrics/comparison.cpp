@@ -1,0 +1,142 @@
+#include "metrics/comparison.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "frames/image_error.h"
+#include "metrics/shape.h"
+
+namespace plumb {
+namespace {
+
+std::string_view last_part(std::string_view plane) {
+    const auto dot = plane.rfind('.');
+    return dot == std::string_view::npos ? plane : plane.substr(dot + 1);
+}
+
+// 0 where the reference does not say.
+int samples_of(const Frame& reference) {
+    const auto fact = reference.facts.find("samples");
+    if (fact == reference.facts.end()) return 0;
+    const std::string& text = fact->second;
+    int samples = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), samples);
+    return error == std::errc() && end == text.data() + text.size() ? samples : 0;
+}
+
+std::vector<std::string> planes_to_compare(const Frame& frame) {
+    auto names = frame.plane_names();
+    std::erase_if(names, [](const std::string& name) { return is_derived_plane(name); });
+    return names;
+}
+
+PlaneComparison compare(const Image& test, const Image& reference, const ComparisonSettings& settings,
+                        std::string_view plane) {
+    require_same_shape(test, reference, fmt::format("plane '{}'", plane));
+    const Image* mask = settings.referenced.mask;
+    const double range = settings.data_range ? *settings.data_range : default_data_range(plane, reference, mask);
+    PlaneComparison result;
+    result.plane = plane;
+    result.errors = pixel_errors(test, reference, range, mask);
+    if (test.width() >= ssim_window && test.height() >= ssim_window) {
+        try {
+            result.ssim = ssim(test, reference, range, mask);
+        } catch (const ImageError&) {
+            // Values are left to compare, but every window touches one that is not finite or is masked: no SSIM.
+        }
+    }
+    return result;
+}
+
+}  // namespace
+
+double default_data_range(std::string_view plane, const Image& reference, const Image* mask) {
+    const auto name = last_part(plane);
+    if (name == "ao" || name == "alpha" || name == "albedo") return 1.0;
+    if (name == "normal") return 2.0;
+    if (const double white = value_percentile(reference, 0.99, mask); white > 0.0) return white;
+    if (const double largest = value_percentile(reference, 1.0, mask); largest > 0.0) return largest;
+    return 1.0;
+}
+
+const std::vector<std::string>& measure_names() {
+    static const std::vector<std::string> names = [] {
+        std::vector<std::string> list;
+        for (const auto& [name, value] : PlaneComparison{}.measures()) list.push_back(name);
+        return list;
+    }();
+    return names;
+}
+
+std::vector<std::pair<std::string, double>> PlaneComparison::measures() const {
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    const auto of_reference = [&](double ReferencedError::*member) {
+        return referenced ? (*referenced).*member : none;
+    };
+    return {
+        {"mae", errors.mae},
+        {"mse", errors.mse},
+        {"rmse", errors.rmse},
+        {"bias", errors.bias},
+        {"relative_mse_pbrt", errors.relative_mse_pbrt},
+        {"relative_mse_tev", errors.relative_mse_tev},
+        {"relative_mse_falcor", errors.relative_mse_falcor},
+        {"psnr", errors.psnr},
+        {"ssim", ssim ? ssim->mean : none},
+        {"median", errors.median},
+        {"p95", errors.percentile_95},
+        {"p99", errors.percentile_99},
+        {"maximum", errors.maximum},
+        {"data_range", errors.peak},
+        {"values", static_cast<double>(errors.values)},
+        {"left_out", static_cast<double>(errors.left_out)},
+        {"unbiased_mse", of_reference(&ReferencedError::mse)},
+        {"unbiased_mse_lower", of_reference(&ReferencedError::lower)},
+        {"unbiased_mse_upper", of_reference(&ReferencedError::upper)},
+        {"unbiased_rmse", referenced ? std::sqrt(std::max(referenced->mse, 0.0)) : none},
+        {"reference_noise_mse", of_reference(&ReferencedError::reference_noise_mse)},
+        {"noise_ratio", of_reference(&ReferencedError::ratio)},
+        {"trustworthy", referenced ? (referenced->trustworthy ? 1.0 : 0.0) : none},
+    };
+}
+
+double PlaneComparison::measure(std::string_view name) const {
+    for (const auto& [known, value] : measures()) {
+        if (known == name) return value;
+    }
+    throw ImageError(fmt::format("unknown measure '{}'; use one of: {}", name, fmt::join(measure_names(), ", ")));
+}
+
+PlaneComparison compare_planes(const Image& test, const Image& reference, const ComparisonSettings& settings,
+                               std::string_view plane) {
+    return compare(test, reference, settings, plane);
+}
+
+FrameComparison compare_frames(const Frame& test, const Frame& reference, const ComparisonSettings& settings) {
+    const auto in_test = planes_to_compare(test), in_reference = planes_to_compare(reference);
+    FrameComparison result;
+    std::vector<std::string> common;
+    std::ranges::set_intersection(in_test, in_reference, std::back_inserter(common));
+    std::ranges::set_difference(in_test, in_reference, std::back_inserter(result.only_in_test));
+    std::ranges::set_difference(in_reference, in_test, std::back_inserter(result.only_in_reference));
+    if (common.empty()) {
+        throw ImageError(fmt::format("the frames have no plane in common: {} against {} in the reference",
+                                     fmt::join(in_test, ", "), fmt::join(in_reference, ", ")));
+    }
+    const int samples = samples_of(reference);
+    for (const std::string& plane : common) {
+        auto& comparison =
+            result.planes.emplace_back(compare(test.plane(plane), reference.plane(plane), settings, plane));
+        if (reference.has("half_a." + plane) && reference.has("half_b." + plane)) {
+            comparison.referenced = referenced_error(test, reference, plane, samples, settings.referenced);
+        }
+    }
+    return result;
+}
+
+}  // namespace plumb

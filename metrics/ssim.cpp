@@ -1,0 +1,208 @@
+#include "metrics/ssim.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include "frames/image_error.h"
+#include "metrics/shape.h"
+
+namespace plumb {
+namespace {
+
+constexpr int radius = ssim_window / 2;
+using Kernel = std::array<double, ssim_window>;
+
+Kernel gaussian() {
+    constexpr double sigma = 1.5;
+    Kernel kernel;
+    double sum = 0;
+    for (int i = 0; i < ssim_window; ++i) {
+        const double x = i - radius;
+        sum += kernel[i] = std::exp(-0.5 * x * x / (sigma * sigma));
+    }
+    for (double& weight : kernel) weight /= sum;
+    return kernel;
+}
+
+// Mirrors with the edge doubled: -1 -> 0, size -> size - 1.
+int mirrored(int index, int size) {
+    if (index < 0) return -index - 1;
+    return index >= size ? 2 * size - 1 - index : index;
+}
+
+// One channel of both images without the others in between, so that a row is contiguous.
+struct Channel {
+    Channel(const Image& image, int channel)
+        : width(image.width()), height(image.height()), values(image.pixel_count()) {
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            values[i] =
+                image.values()[i * static_cast<std::size_t>(image.channels()) + static_cast<std::size_t>(channel)];
+        }
+    }
+    const float* row(int y) const {
+        return values.data() + static_cast<std::size_t>(mirrored(y, height)) * static_cast<std::size_t>(width);
+    }
+    int width, height;
+    std::vector<float> values;
+};
+
+// Computes single rows of SSIM; owns the scratch memory of one thread. Filters down the columns first, which needs no
+// more than one row of the five moments at a time.
+class RowFilter {
+public:
+    RowFilter(int width, double data_range)
+        : width_(width), c1_(0.01 * data_range * 0.01 * data_range), c2_(0.03 * data_range * 0.03 * data_range) {
+        for (auto& row : columns_) row.resize(static_cast<std::size_t>(width) + 2 * radius);
+        for (auto& row : moments_) row.resize(static_cast<std::size_t>(width));
+    }
+
+    void run(const Channel& test, const Channel& reference, int y, std::span<double> result) {
+        filter_columns(test, reference, y);
+        for (int m = 0; m < 5; ++m) filter_row(columns_[m], moments_[m]);
+        for (std::size_t x = 0; x < result.size(); ++x) {
+            const double v = moments_[0][x], r = moments_[1][x];
+            const double variance_v = moments_[2][x] - v * v, variance_r = moments_[3][x] - r * r;
+            const double covariance = moments_[4][x] - v * r;
+            result[x] = (2.0 * v * r + c1_) * (2.0 * covariance + c2_) /
+                        ((v * v + r * r + c1_) * (variance_v + variance_r + c2_));
+        }
+    }
+
+private:
+    // E[v], E[r], E[v^2], E[r^2], E[vr] down each column, with mirrored margins left and right.
+    void filter_columns(const Channel& test, const Channel& reference, int y) {
+        for (auto& row : columns_) std::ranges::fill(row, 0.0);
+        double* const v1 = columns_[0].data() + radius;
+        double* const r1 = columns_[1].data() + radius;
+        double* const v2 = columns_[2].data() + radius;
+        double* const r2 = columns_[3].data() + radius;
+        double* const vr = columns_[4].data() + radius;
+        for (int k = 0; k < ssim_window; ++k) {
+            const float* const test_row = test.row(y + k - radius);
+            const float* const reference_row = reference.row(y + k - radius);
+            const double weight = kernel_[k];
+#pragma GCC ivdep
+            for (int x = 0; x < width_; ++x) {
+                const double v = test_row[x], r = reference_row[x];
+                v1[x] += weight * v;
+                r1[x] += weight * r;
+                v2[x] += weight * v * v;
+                r2[x] += weight * r * r;
+                vr[x] += weight * v * r;
+            }
+        }
+        for (auto& row : columns_) {
+            for (int i = 1; i <= radius; ++i) {
+                row[radius - i] = row[radius + mirrored(-i, width_)];
+                row[radius + width_ - 1 + i] = row[radius + mirrored(width_ - 1 + i, width_)];
+            }
+        }
+    }
+
+    void filter_row(const std::vector<double>& in, std::vector<double>& out) const {
+        const double* const source = in.data();
+        double* const target = out.data();
+#pragma GCC ivdep
+        for (int x = 0; x < width_; ++x) {
+            double sum = 0;
+            for (int k = 0; k < ssim_window; ++k) sum += kernel_[k] * source[x + k];
+            target[x] = sum;
+        }
+    }
+
+    int width_;
+    double c1_, c2_;
+    Kernel kernel_ = gaussian();
+    std::array<std::vector<double>, 5> columns_, moments_;
+};
+
+void check(const Image& test, const Image& reference, double data_range) {
+    require_same_shape(test, reference);
+    if (test.width() < ssim_window || test.height() < ssim_window) {
+        throw ImageError(fmt::format("SSIM needs images of at least {0}x{0} pixels, not {1}x{2}", ssim_window,
+                                     test.width(), test.height()));
+    }
+    if (!(data_range > 0.0) || std::isinf(data_range)) {
+        throw ImageError(fmt::format("SSIM needs a finite data range above zero, not {}", data_range));
+    }
+}
+
+// Calls use(channel, y, values of the row) for every row of every channel, from many threads.
+void for_each_row(const Image& test, const Image& reference, double data_range,
+                  const std::function<void(int, int, std::span<const double>)>& use) {
+    for (int c = 0; c < test.channels(); ++c) {
+        const Channel v(test, c), r(reference, c);
+        tbb::parallel_for(tbb::blocked_range<int>(0, test.height(), 16), [&](const tbb::blocked_range<int>& rows) {
+            RowFilter filter(test.width(), data_range);
+            std::vector<double> row(static_cast<std::size_t>(test.width()));
+            for (int y = rows.begin(); y < rows.end(); ++y) {
+                filter.run(v, r, y, row);
+                use(c, y, row);
+            }
+        });
+    }
+}
+
+}  // namespace
+
+Ssim ssim(const Image& test, const Image& reference, double data_range, const Image* mask) {
+    check(test, reference, data_range);
+    if (mask) require_mask_fits(*mask, test);
+    struct Row {
+        double sum = 0;
+        std::size_t windows = 0, non_finite = 0;
+    };
+    // Summed per row first and in order of the rows afterwards: the same bits whatever the number of threads.
+    std::vector<Row> rows(static_cast<std::size_t>(test.height()) * static_cast<std::size_t>(test.channels()));
+    for_each_row(test, reference, data_range, [&](int c, int y, std::span<const double> values) {
+        if (y < radius || y >= test.height() - radius) return;
+        Row& row =
+            rows[static_cast<std::size_t>(c) * static_cast<std::size_t>(test.height()) + static_cast<std::size_t>(y)];
+        for (int x = radius; x < test.width() - radius; ++x) {
+            if (!pixel_counts(mask, x, y)) continue;
+            if (const double value = values[static_cast<std::size_t>(x)]; std::isfinite(value)) {
+                row.sum += value;
+                ++row.windows;
+            } else {
+                ++row.non_finite;
+            }
+        }
+    });
+    Ssim result;
+    result.data_range = data_range;
+    double sum = 0;
+    for (const Row& row : rows) {
+        sum += row.sum;
+        result.windows += row.windows;
+        result.non_finite_windows += row.non_finite;
+    }
+    if (result.windows == 0) {
+        throw ImageError(
+            fmt::format("SSIM has no window left in {}x{} pixels: {} hold values that are not finite, all others "
+                        "are masked",
+                        test.width(), test.height(), result.non_finite_windows));
+    }
+    result.mean = sum / static_cast<double>(result.windows);
+    return result;
+}
+
+Image ssim_map(const Image& test, const Image& reference, double data_range) {
+    check(test, reference, data_range);
+    Image map(test.width(), test.height(), test.channels());
+    for_each_row(test, reference, data_range, [&](int c, int y, std::span<const double> values) {
+        for (int x = 0; x < test.width(); ++x) {
+            map.at(x, y, c) = static_cast<float>(values[static_cast<std::size_t>(x)]);
+        }
+    });
+    return map;
+}
+
+}  // namespace plumb
