@@ -1,0 +1,61 @@
+// Maps from the unit square to directions and to triangles, with the densities that belong to them.
+#pragma once
+
+#include <cmath>
+
+#include <glm/glm.hpp>
+#include <glm/gtc/constants.hpp>
+
+namespace plumb {
+
+// Two unit vectors that complete `n` to a right-handed basis.
+//   Source: Duff et al. 2017, "Building an Orthonormal Basis, Revisited".
+inline void complete_basis(const glm::vec3& n, glm::vec3& tangent, glm::vec3& bitangent) {
+    const float sign = std::copysign(1.0f, n.z);
+    const float a = -1.0f / (sign + n.z);
+    const float b = n.x * n.y * a;
+    tangent = {1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x};
+    bitangent = {b, sign + n.y * n.y * a, -n.y};
+}
+
+// Uniform on the unit disc; keeps neighbours neighbours. Source: Shirley, Chiu 1997.
+inline glm::vec2 sample_disc(glm::vec2 u) {
+    const glm::vec2 offset = 2.0f * u - 1.0f;
+    if (offset.x == 0.0f && offset.y == 0.0f) return {0.0f, 0.0f};
+    constexpr float quarter_pi = glm::quarter_pi<float>();
+    if (std::abs(offset.x) > std::abs(offset.y)) {
+        const float angle = quarter_pi * (offset.y / offset.x);
+        return offset.x * glm::vec2(std::cos(angle), std::sin(angle));
+    }
+    const float angle = glm::half_pi<float>() - quarter_pi * (offset.x / offset.y);
+    return offset.y * glm::vec2(std::cos(angle), std::sin(angle));
+}
+
+// A direction about unit `normal` with density cos(theta) / pi.
+inline glm::vec3 sample_cosine_hemisphere(const glm::vec3& normal, glm::vec2 u) {
+    glm::vec3 tangent, bitangent;
+    complete_basis(normal, tangent, bitangent);
+    const glm::vec2 disc = sample_disc(u);
+    const float height = std::sqrt(std::fmax(0.0f, 1.0f - disc.x * disc.x - disc.y * disc.y));
+    return disc.x * tangent + disc.y * bitangent + height * normal;
+}
+
+// Barycentric weights of the second and third corner, uniform over a triangle.
+//   Source: Heitz 2019, "A Low-Distortion Map Between Triangle and Square".
+inline glm::vec2 sample_triangle(glm::vec2 u) {
+    if (u.y > u.x) {
+        const float x = 0.5f * u.x;
+        return {x, u.y - x};
+    }
+    const float y = 0.5f * u.y;
+    return {u.x - y, y};
+}
+
+// Weight of a sample drawn with density `own` where the other strategy would have had density `other`; the power
+// heuristic with exponent 2 (Veach 1997, equation 9.13), written so that large densities do not overflow.
+inline float power_heuristic(float own, float other) {
+    const float ratio = other / own;
+    return 1.0f / (1.0f + ratio * ratio);
+}
+
+}  // namespace plumb
