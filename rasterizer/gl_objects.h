@@ -1,0 +1,133 @@
+// Move-only owners of OpenGL objects. Storage is immutable; every owner makes its own context current before it acts
+// and reports the bytes it holds to the context.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "rasterizer/gl_context.h"
+
+namespace plumb {
+
+// The common part: a name, its context and its bytes. Must not outlive the context.
+class GlObject {
+public:
+    GLuint id() const { return id_; }
+    GlContext& context() const { return *context_; }
+    std::size_t bytes() const { return bytes_; }
+
+protected:
+    enum class Kind { texture, framebuffer, buffer, vertex_array, sampler, query, program };
+
+    GlObject() = default;
+    GlObject(GlContext& context, Kind kind, GLuint id, std::size_t bytes);
+    ~GlObject() { destroy(); }
+    GlObject(GlObject&& other) noexcept
+        : context_(other.context_),
+          kind_(other.kind_),
+          id_(std::exchange(other.id_, 0)),
+          bytes_(std::exchange(other.bytes_, 0)) {}
+    GlObject& operator=(GlObject&& other) noexcept;
+
+private:
+    void destroy() noexcept;
+
+    GlContext* context_ = nullptr;
+    Kind kind_ = Kind::texture;
+    GLuint id_ = 0;
+    std::size_t bytes_ = 0;
+};
+
+// Bytes of one texel of a sized internal format. Throws GlError for a format that no pass uses.
+std::size_t bytes_per_texel(GLenum format);
+
+// A texture of any target. Starts with nearest filtering, clamped to its edge; contents are undefined until written.
+class GlTexture : public GlObject {
+public:
+    GlTexture() = default;
+    static GlTexture flat(GlContext& context, GLenum format, int width, int height, int levels = 1);
+    static GlTexture array(GlContext& context, GLenum format, int width, int height, int layers, int levels = 1);
+    static GlTexture cube_array(GlContext& context, GLenum format, int size, int cubes);
+
+    GLenum target() const { return target_; }
+    GLenum format() const { return format_; }
+    int width() const { return width_; }
+    int height() const { return height_; }
+    int layers() const { return layers_; }  // cube arrays: 6 per cube
+    int levels() const { return levels_; }
+
+    void set_filter(GLint minify, GLint magnify);
+    void set_wrap(GLint wrap_u, GLint wrap_v);
+    void bind(GLuint unit) const;
+
+private:
+    GlTexture(GlContext& context, GLenum target, GLenum format, int width, int height, int layers, int levels);
+
+    GLenum target_ = 0, format_ = 0;
+    int width_ = 0, height_ = 0, layers_ = 0, levels_ = 0;
+};
+
+// One layer and level of a texture as the target of a framebuffer. `layer` -1 attaches all layers, for gl_Layer.
+struct GlAttachment {
+    const GlTexture* texture = nullptr;
+    int layer = 0;
+    int level = 0;
+};
+
+class GlFramebuffer : public GlObject {
+public:
+    GlFramebuffer() = default;
+    // Colour attachments in the order of the fragment shader's output locations; all of one size. Throws GlError naming
+    // `purpose` where OpenGL calls the framebuffer incomplete.
+    GlFramebuffer(GlContext& context, std::span<const GlAttachment> colours, const GlAttachment& depth,
+                  const char* purpose);
+    // Binds for drawing and sets the viewport to the whole framebuffer.
+    void bind() const;
+    int width() const { return width_; }
+    int height() const { return height_; }
+
+private:
+    int width_ = 0, height_ = 0;
+};
+
+class GlBuffer : public GlObject {
+public:
+    GlBuffer() = default;
+    // `data` may be null where GL_DYNAMIC_STORAGE_BIT lets it be written later. OpenGL has no empty buffers: at least
+    // 16 bytes are allocated.
+    GlBuffer(GlContext& context, std::size_t size, const void* data, GLbitfield flags = 0);
+    template <typename Value>
+    static GlBuffer from(GlContext& context, const std::vector<Value>& values) {
+        return GlBuffer(context, values.size() * sizeof(Value), values.data());
+    }
+    void write(std::size_t offset, std::size_t size, const void* data) const;
+    void bind(GLenum indexed_target, GLuint index) const;
+};
+
+class GlVertexArray : public GlObject {
+public:
+    GlVertexArray() = default;
+    explicit GlVertexArray(GlContext& context);
+    void bind() const;
+};
+
+class GlSampler : public GlObject {
+public:
+    GlSampler() = default;
+    GlSampler(GlContext& context, GLint minify, GLint magnify, GLint wrap_u, GLint wrap_v);
+    void bind(GLuint unit) const;
+};
+
+// A timer query.
+class GlQuery : public GlObject {
+public:
+    GlQuery() = default;
+    explicit GlQuery(GlContext& context);
+    void begin() const;
+    void end() const;
+    double milliseconds() const;  // waits for the result
+};
+
+}  // namespace plumb

@@ -1,0 +1,71 @@
+// A pass: one step of the pipeline, with a shader or two beside it.
+//
+// A pass is first *declared*: its name, what it reads and writes (plane names), and how to make it. Only passes whose
+// outputs are read are made (pass_plan.h); what is not made allocates nothing and compiles nothing.
+//
+// Names of planes are those of the Frame ("depth", "normal", "ao", "irradiance"...); "layer2.depth" stands for the
+// second layer of the array texture "depth". Everything a pass allocates is allocated in its constructor.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "frames/frame.h"
+#include "frames/quantities.h"
+#include "rasterizer/method.h"
+#include "rasterizer/plane_textures.h"
+#include "rasterizer/shader.h"
+#include "scenes/camera.h"
+#include "scenes/scene.h"
+
+namespace plumb {
+
+class SceneGeometry;
+
+// What a pass is made from; all references outlive it.
+struct PassResources {
+    GlContext& context;
+    const Scene& scene;
+    const Method& method;
+    const Quantities& quantities;
+    PlaneTextures& planes;  // a pass creates its outputs here and looks up its inputs
+    ProgramCache& programs;
+    const std::set<std::string, std::less<>>&
+        read;  // planes that somebody reads: an output not among them can be left out
+    std::function<const SceneGeometry&()> geometry;  // the scene's triangles on the GPU, uploaded at the first call
+
+    bool is_read(std::string_view plane) const { return read.find(plane) != read.end(); }
+    // 2 where somebody reads the second layer of `plane`.
+    int layers_of(std::string_view plane) const {
+        return is_read(std::string(second_layer_prefix) + std::string(plane)) ? 2 : 1;
+    }
+};
+
+// What changes from frame to frame. The uniform block of view.glsl is bound and holds `view` already.
+struct PassFrame {
+    const View& view;      // with the guard band
+    const View& previous;  // with the guard band
+    const Frame* truth = nullptr;
+};
+
+class Pass {
+public:
+    virtual ~Pass() = default;
+    // Finds depth test, blending and culling off, and leaves them so.
+    virtual void execute(const PassFrame& frame) = 0;
+};
+
+struct PassDeclaration {
+    std::string name;
+    std::vector<std::string> inputs, outputs;
+    std::function<std::unique_ptr<Pass>(const PassResources&)> create;
+    std::string disabled =
+        {};  // why it cannot run with this scene and method ("method.ao.enabled is false"); empty: it can
+    std::string remark = {};  // what is worth knowing when it runs ("3 point lights")
+};
+
+}  // namespace plumb

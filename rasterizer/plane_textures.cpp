@@ -1,0 +1,28 @@
+#include "rasterizer/plane_textures.h"
+
+#include <fmt/format.h>
+
+#include "rasterizer/gl_error.h"
+
+namespace plumb {
+
+GlTexture& PlaneTextures::create(const std::string& name, GLenum format, int layers, int levels) {
+    return adopt(name, GlTexture::array(context_, format, width_, height_, layers, levels));
+}
+
+GlTexture& PlaneTextures::adopt(const std::string& name, GlTexture texture) {
+    const auto [entry, added] = textures_.emplace(name, std::move(texture));
+    if (!added) throw GlError(fmt::format("two passes allocate the plane '{}'", name));
+    return entry->second;
+}
+
+const GlTexture& PlaneTextures::get(std::string_view name) const {
+    const auto found = textures_.find(name);
+    if (found != textures_.end()) return found->second;
+    std::string names;
+    for (const auto& [known, texture] : textures_) names += names.empty() ? known : ", " + known;
+    throw GlError(
+        fmt::format("no pass has allocated the plane '{}'; there are: {}", name, names.empty() ? "none" : names));
+}
+
+}  // namespace plumb

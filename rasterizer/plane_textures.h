@@ -1,0 +1,40 @@
+// The planes of a frame while they live on the GPU: array textures by name, one layer per G-buffer layer.
+//
+// On the GPU the lower row comes first (as OpenGL); rows are flipped once, on the way in or out (texture_transfer.h).
+// `depth` holds linear metres along the camera's -Z, +infinity where nothing is seen, in every layer; where it is
+// infinite the other planes mean nothing.
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+
+#include "rasterizer/gl_objects.h"
+
+namespace plumb {
+
+constexpr std::string_view second_layer_prefix = "layer2.";
+
+class PlaneTextures {
+public:
+    PlaneTextures(GlContext& context, int width, int height) : context_(context), width_(width), height_(height) {}
+
+    // Size of every plane: the view's with its guard band.
+    int width() const { return width_; }
+    int height() const { return height_; }
+
+    // Allocates a plane; the reference stays valid. Throws GlError where the name is taken.
+    GlTexture& create(const std::string& name, GLenum format, int layers, int levels = 1);
+    // Adds a texture of another shape (a shadow map) under a name.
+    GlTexture& adopt(const std::string& name, GlTexture texture);
+    bool has(std::string_view name) const { return textures_.find(name) != textures_.end(); }
+    // Throws GlError that lists the planes there are.
+    const GlTexture& get(std::string_view name) const;
+
+private:
+    GlContext& context_;
+    int width_, height_;
+    std::map<std::string, GlTexture, std::less<>> textures_;
+};
+
+}  // namespace plumb

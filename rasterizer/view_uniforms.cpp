@@ -1,0 +1,46 @@
+#include "rasterizer/view_uniforms.h"
+
+#include <cstddef>
+
+namespace plumb {
+namespace {
+
+// std140 layout of ViewBlock in view.glsl.
+struct ViewBlock {
+    glm::mat4 camera_from_world;
+    glm::mat4 world_from_camera;
+    glm::mat4 clip_from_camera;
+    glm::mat4 previous_camera_from_world;
+    glm::vec2 view_size;
+    glm::vec2 tan_half;
+    glm::vec2 previous_tan_half;
+    float near_plane;
+    float far_plane;
+    float pixels_per_metre;
+    int first_inner_pixel;
+    float padding[2];
+};
+static_assert(offsetof(ViewBlock, view_size) == 256 && offsetof(ViewBlock, near_plane) == 280 &&
+              sizeof(ViewBlock) == 304);
+
+}  // namespace
+
+ViewUniforms::ViewUniforms(GlContext& context) : buffer_(context, sizeof(ViewBlock), nullptr, GL_DYNAMIC_STORAGE_BIT) {}
+
+void ViewUniforms::update(const View& view, const View& previous, int guard_band) const {
+    ViewBlock block{};
+    block.camera_from_world = view.camera_from_world();
+    block.world_from_camera = view.camera().world_from_camera;
+    block.clip_from_camera = view.clip_from_camera();
+    block.previous_camera_from_world = previous.camera_from_world();
+    block.view_size = {static_cast<float>(view.width()), static_cast<float>(view.height())};
+    block.tan_half = view.tan_half();
+    block.previous_tan_half = previous.tan_half();
+    block.near_plane = view.camera().near_plane;
+    block.far_plane = view.camera().far_plane;
+    block.pixels_per_metre = view.pixels_per_metre();
+    block.first_inner_pixel = guard_band;
+    buffer_.write(0, sizeof(block), &block);
+}
+
+}  // namespace plumb

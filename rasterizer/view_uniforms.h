@@ -1,0 +1,21 @@
+// The uniform block of view.glsl.
+#pragma once
+
+#include "rasterizer/gl_objects.h"
+#include "scenes/camera.h"
+
+namespace plumb {
+
+class ViewUniforms {
+public:
+    explicit ViewUniforms(GlContext& context);
+    // `view` and `previous` include the guard band, which is `guard_band` pixels wide.
+    void update(const View& view, const View& previous, int guard_band) const;
+    void bind() const { buffer_.bind(GL_UNIFORM_BUFFER, binding); }
+
+private:
+    static constexpr GLuint binding = 0;
+    GlBuffer buffer_;
+};
+
+}  // namespace plumb
