@@ -29,7 +29,7 @@ double default_data_range(std::string_view plane, const Image& reference, const 
 struct PlaneComparison {
     std::string plane;
     PixelErrors errors;
-    std::optional<Ssim> ssim;                   // none for images smaller than its window, or without a finite one
+    std::optional<Ssim> ssim;                   // none for images smaller than its window
     std::optional<ReferencedError> referenced;  // where the reference has half-buffers
 
     // All measures in a fixed order under fixed names, the same for every plane; NaN where one does not exist:

@@ -7,9 +7,9 @@
 //   mse = mean (I - A)(I - B) = mean (I - R)^2 - mean (A - B)^2 / 4
 //
 // E[(I - A)(I - B)] = (I - T)^2 for the truth T, because A and B are independent and unbiased. The second term of the
-// right side is the noise: (A - B)^2 / 4 estimates the variance of R. (Cross-validated error of two buffers: Rousselle,
-// Manzi, Zwicker 2013, "Robust Denoising using Feature and Color Information", section 4.) The estimate may come out
-// below zero where the error is lost in the noise.
+// right side is the noise: (A - B)^2 / 4 estimates the variance of R. (Two half-buffers for error estimates: Rousselle,
+// Knaus, Zwicker 2012, "Adaptive Rendering with Non-Local Means Filtering".) The estimate may come out below zero where
+// the error is lost in the noise.
 //
 // The 95 % interval is the percentile interval of a block bootstrap (Efron 1979; blocks: Kuensch 1989): square blocks
 // of pixels are drawn with replacement. Pixels cannot be drawn one by one: errors of neighbours are alike over the

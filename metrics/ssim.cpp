@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -184,13 +185,8 @@ Ssim ssim(const Image& test, const Image& reference, double data_range, const Im
         result.windows += row.windows;
         result.non_finite_windows += row.non_finite;
     }
-    if (result.windows == 0) {
-        throw ImageError(
-            fmt::format("SSIM has no window left in {}x{} pixels: {} hold values that are not finite, all others "
-                        "are masked",
-                        test.width(), test.height(), result.non_finite_windows));
-    }
-    result.mean = sum / static_cast<double>(result.windows);
+    result.mean =
+        result.windows > 0 ? sum / static_cast<double>(result.windows) : std::numeric_limits<double>::quiet_NaN();
     return result;
 }
 

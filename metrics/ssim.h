@@ -23,14 +23,14 @@ namespace plumb {
 inline constexpr int ssim_window = 11;
 
 struct Ssim {
-    double mean = 0;
+    double mean = 0;  // NaN where no window is left
     double data_range = 0;
     std::size_t windows = 0;             // pixels times channels that the mean runs over
     std::size_t non_finite_windows = 0;  // left out because a value in the window is infinite or NaN
 };
 
 // The mask chooses window centres; windows still see the pixels around them. Throws ImageError where shapes differ, an
-// image is smaller than the window, the data range is not positive, or no window is left.
+// image is smaller than the window or the data range is not positive.
 Ssim ssim(const Image& test, const Image& reference, double data_range, const Image* mask = nullptr);
 
 // The same at every pixel and channel, borders included; NaN where the window holds a value that is not finite.

@@ -1,0 +1,102 @@
+#include <cmath>
+
+#include <gmock/gmock.h>
+
+#include "frames/image_error.h"
+#include "metrics/comparison.h"
+#include "tests/metrics/pattern.h"
+
+namespace plumb {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+TEST(Comparison, MeasuresHaveAFixedOrderAndNamesThatThresholdsCanRelyOn) {
+    EXPECT_THAT(measure_names(),
+                ElementsAre("mae", "mse", "rmse", "bias", "relative_mse_pbrt", "relative_mse_tev",
+                            "relative_mse_falcor", "psnr", "ssim", "median", "p95", "p99", "maximum", "data_range",
+                            "values", "left_out", "unbiased_mse", "unbiased_mse_lower", "unbiased_mse_upper",
+                            "unbiased_rmse", "reference_noise_mse", "noise_ratio", "trustworthy"));
+}
+
+TEST(Comparison, HoldsTheSameNumbersAsTheMeasuresThemselves) {
+    const Image test = test::pattern(37, 53, true), reference = test::pattern(37, 53, false);
+    ComparisonSettings settings;
+    settings.data_range = 1.0;
+    const PlaneComparison comparison = compare_planes(test, reference, settings, "direct");
+    EXPECT_EQ(comparison.plane, "direct");
+    EXPECT_EQ(comparison.measure("mse"), pixel_errors(test, reference, 1.0).mse);
+    EXPECT_EQ(comparison.measure("ssim"), ssim(test, reference, 1.0).mean);
+    EXPECT_EQ(comparison.measure("data_range"), 1.0);
+    EXPECT_TRUE(std::isnan(comparison.measure("unbiased_mse"))) << "no half-buffers";
+    EXPECT_EQ(comparison.best_mse(), comparison.errors.mse);
+    EXPECT_THROW(comparison.measure("flip"), ImageError);
+}
+
+TEST(Comparison, DataRangeIgnoresALampAndStaysPositiveInTheDark) {
+    Image radiance(20, 20, 1, 0.5f);
+    radiance.at(3, 3) = 1000.0f;
+    EXPECT_EQ(default_data_range("total", radiance), 0.5);
+    EXPECT_EQ(default_data_range("ao", radiance), 1.0);
+    EXPECT_EQ(default_data_range("layer2.normal", radiance), 2.0);
+    Image spark(20, 20, 1);
+    spark.at(0, 0) = 3.0f;
+    EXPECT_EQ(default_data_range("indirect", spark), 3.0);
+    EXPECT_EQ(default_data_range("indirect", Image(20, 20, 1)), 1.0);
+}
+
+TEST(Comparison, SmallImagesHaveNoSsim) {
+    const PlaneComparison comparison = compare_planes(Image(4, 4, 1, 1.0f), Image(4, 4, 1, 0.5f));
+    EXPECT_TRUE(std::isnan(comparison.measure("ssim")));
+    EXPECT_DOUBLE_EQ(comparison.measure("rmse"), 0.5);
+}
+
+TEST(Comparison, OfFramesTakesCommonPlanesHalfBuffersAndSamples) {
+    Frame method(12, 12), reference(12, 12);
+    method.set("direct", Image(12, 12, 3, 1.0f));
+    method.set("ao", Image(12, 12, 1, 0.5f));
+    method.set("layer2.depth", Image(12, 12, 1, 2.0f));
+    reference.set("direct", Image(12, 12, 3, 0.75f));
+    reference.set("half_a.direct", Image(12, 12, 3, 0.5f));
+    reference.set("half_b.direct", Image(12, 12, 3, 1.0f));
+    reference.set("variance.direct", Image(12, 12, 3, 0.1f));
+    reference.set("ao", Image(12, 12, 1, 0.5f));
+    reference.set("indirect", Image(12, 12, 3));
+    reference.facts["samples"] = "64";
+
+    const FrameComparison comparison = compare_frames(method, reference);
+    ASSERT_EQ(comparison.planes.size(), 2u);
+    EXPECT_EQ(comparison.planes[0].plane, "ao");
+    EXPECT_EQ(comparison.planes[0].errors.mse, 0.0);
+    EXPECT_FALSE(comparison.planes[0].referenced);
+    EXPECT_EQ(comparison.planes[1].plane, "direct");
+    ASSERT_TRUE(comparison.planes[1].referenced);
+    EXPECT_EQ(comparison.planes[1].referenced->reference_samples, 64);
+    EXPECT_DOUBLE_EQ(comparison.planes[1].best_mse(), 0.0) << "(1 - 0.5)(1 - 1)";
+    EXPECT_DOUBLE_EQ(comparison.planes[1].errors.mse, 0.0625);
+    EXPECT_EQ(comparison.planes[1].measure("trustworthy"), 0.0);
+    EXPECT_THAT(comparison.only_in_test, ElementsAre("layer2.depth"));
+    EXPECT_THAT(comparison.only_in_reference, ElementsAre("indirect"));
+}
+
+TEST(Comparison, OfFramesThatDoNotFitSaysWhy) {
+    const auto message = [](const Frame& a, const Frame& b) -> std::string {
+        try {
+            compare_frames(a, b);
+        } catch (const ImageError& error) {
+            return error.what();
+        }
+        return "no ImageError";
+    };
+    Frame a(2, 2), b(3, 2), c(2, 2);
+    a.set("ao", Image(2, 2, 1));
+    b.set("ao", Image(3, 2, 1));
+    c.set("direct", Image(2, 2, 3));
+    EXPECT_THAT(message(a, b), AllOf(HasSubstr("plane 'ao'"), HasSubstr("2x2"), HasSubstr("3x2")));
+    EXPECT_THAT(message(a, c), AllOf(HasSubstr("no plane in common"), HasSubstr("ao"), HasSubstr("direct")));
+}
+
+}  // namespace
+}  // namespace plumb

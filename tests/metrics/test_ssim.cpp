@@ -1,0 +1,160 @@
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "frames/image_error.h"
+#include "metrics/ssim.h"
+#include "tests/metrics/pattern.h"
+
+namespace plumb {
+namespace {
+
+// Golden values of scikit-image 0.19.3 (Debian 12, python3-skimage):
+//
+//   import numpy as np
+//   from skimage.metrics import structural_similarity as s
+//   y, x = np.mgrid[0:37, 0:53]
+//   value = lambda change: np.stack([((x * 37 + y * 91 + x * y + c * 17 + change) % 256) / 256.0 for c in range(3)],
+//   -1) a, b = value(0), value((x // 8 + y // 8) * 5) k = dict(gaussian_weights=True, sigma=1.5,
+//   use_sample_covariance=False) s(b, a, data_range=1.0, channel_axis=2, **k)                         #
+//   0.5119202931691481 s(b[..., 0], a[..., 0], data_range=2.5, **k)                         # 0.538402006401901
+//   s(b[..., 0], a[..., 0], data_range=1.0, full=True, **k)[1][y, x]     # the map, borders included
+//
+// Tolerance: both work in double precision on the same values and differ in the order of summation only. The variances
+// are differences of nearly equal sums, which costs a few digits: 1e-10.
+constexpr double order_of_summation = 1e-10;
+
+Image channel_of(const Image& image, int channel) {
+    Image result(image.width(), image.height(), 1);
+    for (int y = 0; y < image.height(); ++y) {
+        for (int x = 0; x < image.width(); ++x) result.at(x, y) = image.at(x, y, channel);
+    }
+    return result;
+}
+
+// SSIM of one window as the formula stands, 121 weights, variances as sums of squared deviations from the mean.
+double window_ssim(const Image& v, const Image& r, int cx, int cy, int c, double range) {
+    double weights = 0, mean_v = 0, mean_r = 0;
+    const auto visit = [&](auto&& use) {
+        for (int dy = -5; dy <= 5; ++dy) {
+            for (int dx = -5; dx <= 5; ++dx) {
+                use(std::exp(-(dx * dx + dy * dy) / 4.5), double{v.at(cx + dx, cy + dy, c)},
+                    double{r.at(cx + dx, cy + dy, c)});
+            }
+        }
+    };
+    visit([&](double w, double a, double b) {
+        weights += w;
+        mean_v += w * a;
+        mean_r += w * b;
+    });
+    mean_v /= weights;
+    mean_r /= weights;
+    double variance_v = 0, variance_r = 0, covariance = 0;
+    visit([&](double w, double a, double b) {
+        variance_v += w * (a - mean_v) * (a - mean_v);
+        variance_r += w * (b - mean_r) * (b - mean_r);
+        covariance += w * (a - mean_v) * (b - mean_r);
+    });
+    const double c1 = std::pow(0.01 * range, 2), c2 = std::pow(0.03 * range, 2);
+    return (2 * mean_v * mean_r + c1) * (2 * covariance / weights + c2) /
+           ((mean_v * mean_v + mean_r * mean_r + c1) * ((variance_v + variance_r) / weights + c2));
+}
+
+double direct_ssim(const Image& v, const Image& r, double range) {
+    double sum = 0;
+    int count = 0;
+    for (int c = 0; c < v.channels(); ++c) {
+        for (int y = 5; y < v.height() - 5; ++y) {
+            for (int x = 5; x < v.width() - 5; ++x) {
+                sum += window_ssim(v, r, x, y, c, range);
+                ++count;
+            }
+        }
+    }
+    return sum / count;
+}
+
+TEST(Ssim, MatchesScikitImage) {
+    const Image test = test::pattern(37, 53, true), reference = test::pattern(37, 53, false);
+    const Ssim colour = ssim(test, reference, 1.0);
+    EXPECT_NEAR(colour.mean, 0.5119202931691481, order_of_summation);
+    EXPECT_EQ(colour.windows, 43u * 27u * 3u);
+    EXPECT_NEAR(ssim(channel_of(test, 0), channel_of(reference, 0), 2.5).mean, 0.538402006401901, order_of_summation);
+}
+
+TEST(Ssim, MapMatchesScikitImageAtTheBorders) {
+    const Image map = ssim_map(test::pattern(37, 53, true), test::pattern(37, 53, false), 1.0);
+    constexpr double float32 = 1e-7;  // the map is stored in single precision
+    EXPECT_NEAR(map.at(0, 0), 1.0, float32);
+    EXPECT_NEAR(map.at(20, 36), 0.40916366332904963, float32);
+    EXPECT_NEAR(map.at(52, 18), 0.45001643065395075, float32);
+    EXPECT_NEAR(map.at(26, 18), 0.4672129561126069, float32);
+}
+
+TEST(Ssim, MatchesADirectEvaluationOnRadianceWithStrongContrast) {
+    std::mt19937 random(7);
+    std::lognormal_distribution<float> radiance(-1.0f, 1.5f);
+    std::normal_distribution<float> noise(0.0f, 0.1f);
+    Image reference(40, 31, 2), test(40, 31, 2);
+    for (std::size_t i = 0; i < reference.values().size(); ++i) {
+        reference.values()[i] = radiance(random);
+        test.values()[i] = reference.values()[i] * (1.0f + noise(random));
+    }
+    // The direct form subtracts the mean first, this one subtracts squares: at contrasts of 1000 that costs three
+    // digits.
+    EXPECT_NEAR(ssim(test, reference, 3.0).mean, direct_ssim(test, reference, 3.0), 1e-9);
+}
+
+TEST(Ssim, IsOneForEqualImagesAndForBlackOnes) {
+    const Image image = test::pattern(20, 20, true);
+    EXPECT_NEAR(ssim(image, image, 1.0).mean, 1.0, order_of_summation);
+    EXPECT_NEAR(ssim(Image(11, 11, 1), Image(11, 11, 1), 1.0).mean, 1.0, order_of_summation);
+}
+
+TEST(Ssim, OfTwoConstantsIsTheBrightnessTermAlone) {
+    // No variance: SSIM = (2 a b + C1) / (a^2 + b^2 + C1) with C1 = 1e-4.
+    EXPECT_NEAR(ssim(Image(15, 15, 1, 0.5f), Image(15, 15, 1, 0.25f), 1.0).mean, 0.2501 / 0.3126, order_of_summation);
+}
+
+TEST(Ssim, TheDataRangeIsNotGuessed) {
+    const Image test = test::pattern(20, 20, true), reference = test::pattern(20, 20, false);
+    EXPECT_LT(ssim(test, reference, 0.1).mean, ssim(test, reference, 10.0).mean);
+    EXPECT_THROW(ssim(test, reference, 0.0), ImageError);
+}
+
+TEST(Ssim, AValueThatIsNotFiniteSpoilsItsWindowsOnlyAndIsCounted) {
+    const Image reference = test::pattern(41, 41, false);
+    for (const float poison : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+        Image test = test::pattern(41, 41, true);
+        test.at(20, 20, 1) = poison;
+        const Ssim result = ssim(test, reference, 1.0);
+        EXPECT_EQ(result.non_finite_windows, 121u);
+        EXPECT_EQ(result.windows, 31u * 31u * 3u - 121u);
+        EXPECT_TRUE(std::isfinite(result.mean));
+        EXPECT_TRUE(std::isnan(ssim_map(test, reference, 1.0).at(20, 20, 1)));
+    }
+}
+
+TEST(Ssim, AMaskChoosesWindowCentres) {
+    const Image test = channel_of(test::pattern(30, 30, true), 0),
+                reference = channel_of(test::pattern(30, 30, false), 0);
+    Image mask(30, 30, 1);
+    mask.at(12, 17) = mask.at(20, 9) = 1.0f;
+    mask.at(2, 2) = 1.0f;  // too near to the border to count
+    const Ssim result = ssim(test, reference, 1.0, &mask);
+    EXPECT_EQ(result.windows, 2u);
+    EXPECT_NEAR(result.mean,
+                0.5 * (window_ssim(test, reference, 12, 17, 0, 1.0) + window_ssim(test, reference, 20, 9, 0, 1.0)),
+                order_of_summation);
+    EXPECT_TRUE(std::isnan(ssim(test, reference, 1.0, &(mask = Image(30, 30, 1))).mean));
+}
+
+TEST(Ssim, ImagesSmallerThanTheWindowAreRefused) {
+    EXPECT_THROW(ssim(Image(10, 20, 1), Image(10, 20, 1), 1.0), ImageError);
+}
+
+}  // namespace
+}  // namespace plumb
