@@ -73,7 +73,8 @@ std::vector<SurfaceHit> first_layer(const TracedScene& scene, const View& view) 
 std::vector<SurfaceHit> next_layer(const TracedScene& scene, const View& view, const std::vector<SurfaceHit>& layer,
                                    float minimum_separation) {
     return trace_layer(scene, view, [&](std::size_t pixel, float scale) {
-        return layer[pixel].missed() ? infinite_distance : layer[pixel].distance + minimum_separation / scale;
+        if (layer[pixel].missed()) return infinite_distance;
+        return std::nextafter(layer[pixel].distance + minimum_separation / scale, infinite_distance);
     });
 }
 

@@ -101,7 +101,7 @@ int PathIntegrator::estimate(const SurfacePoint& x, const SampleSequence& sequen
             }
             break;
         }
-        const SurfaceHit hit = scene_.intersect(origin, direction, 0.0f, reach);
+        const SurfaceHit hit = scene_.intersect(origin, direction, positive_distance, reach);
         if (tests_visibility && !hit.missed()) estimate.ambient_visibility = 1.0f - obscurance(hit.distance);
         if (!looks_for_emitters && !goes_on) break;
         const float cosine = glm::dot(vertex.shading_normal, direction);

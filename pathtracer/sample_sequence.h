@@ -42,11 +42,11 @@ inline std::uint32_t laine_karras_permutation(std::uint32_t x, std::uint32_t see
 // Pascal's triangle modulo 2, which is a Kronecker power of [[1, 1], [0, 1]] and so five masked shifts.
 inline std::uint32_t second_sobol_dimension(std::uint32_t reversed_index) {
     std::uint32_t x = reversed_index;
-    x ^= x >> 16;
-    x ^= (x & 0xff00ff00u) >> 8;
-    x ^= (x & 0xf0f0f0f0u) >> 4;
-    x ^= (x & 0xccccccccu) >> 2;
-    x ^= (x & 0xaaaaaaaau) >> 1;
+    x ^= x << 16;
+    x ^= (x & 0x00ff00ffu) << 8;
+    x ^= (x & 0x0f0f0f0fu) << 4;
+    x ^= (x & 0x33333333u) << 2;
+    x ^= (x & 0x55555555u) << 1;
     return x;
 }
 

@@ -160,7 +160,7 @@ bool TracedScene::occluded(const glm::vec3& origin, const glm::vec3& direction, 
     RTCRay ray;
     ray.org_x = origin.x, ray.org_y = origin.y, ray.org_z = origin.z;
     ray.dir_x = direction.x, ray.dir_y = direction.y, ray.dir_z = direction.z;
-    ray.tnear = 0.0f, ray.tfar = farthest;
+    ray.tnear = positive_distance, ray.tfar = farthest;
     ray.time = 0.0f, ray.mask = 0xffffffffu, ray.id = 0, ray.flags = 0;
     embree_occluded(embree_scene_, ray, coherence);
     return ray.tfar < 0.0f;  // Embree sets minus infinity where something is in the way

@@ -14,6 +14,9 @@
 namespace plumb {
 
 constexpr float infinite_distance = std::numeric_limits<float>::infinity();
+// Any hit but one at the very origin, which Embree would count: the point may lie exactly in a coordinate plane, where
+// it has no rounding error and its ray no distance from its own triangle.
+constexpr float positive_distance = std::numeric_limits<float>::min();
 
 // Where a ray met a triangle; 20 bytes, so that the hits of a whole view can be kept.
 struct SurfaceHit {
@@ -67,8 +70,8 @@ public:
     const Material& material(std::uint32_t instance) const { return *parts_[instance].material; }
     std::uint32_t triangle_count(std::uint32_t instance) const { return parts_[instance].triangle_count; }
 
-    // The nearest hit with nearest < distance <= farthest, in units of the direction's length.
-    SurfaceHit intersect(const glm::vec3& origin, const glm::vec3& direction, float nearest = 0.0f,
+    // The nearest hit with nearest <= distance <= farthest, in units of the direction's length.
+    SurfaceHit intersect(const glm::vec3& origin, const glm::vec3& direction, float nearest = positive_distance,
                          float farthest = infinite_distance, RayCoherence coherence = RayCoherence::incoherent) const;
     bool occluded(const glm::vec3& origin, const glm::vec3& direction, float farthest = infinite_distance,
                   RayCoherence coherence = RayCoherence::incoherent) const;
