@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include <glm/gtc/constants.hpp>
 
@@ -54,30 +55,17 @@ LightTable::LightTable(const TracedScene& traced, const EnvironmentDistribution&
     find_emitters(powers);
     if (strategy == EmitterSampling::directions) std::fill(powers.begin(), powers.end(), 0.0);
 
-    // The flux through the bounding sphere (pbrt-v4, section 12.5). Cosine-distributed rays are already ideal for a
-    // constant environment, so it takes part only where nothing else may be used.
-    const double radius = std::max(0.5 * static_cast<double>(scene.bounds().diagonal()), 1e-30);
-    const double cross_section = glm::pi<double>() * radius * radius;
+    // Cosine-distributed rays are already ideal for a constant environment, so it is sampled only where nothing else
+    // may be.
     const bool has_environment = !scene.environment.is_black();
     const bool image = has_environment && !environment.empty();
     const bool environment_sampled =
         has_environment && (strategy == EmitterSampling::lights || (image && strategy == EmitterSampling::both));
-    const double environment_luminance = image ? environment.mean_luminance() : luminance(scene.environment.radiance);
+    const double emitter_power = std::accumulate(powers.begin(), powers.end(), 0.0);
     environment_index_ = powers.size();
-    powers.push_back(environment_sampled ? glm::pi<double>() * cross_section * environment_luminance : 0.0);
+    powers.push_back(!environment_sampled ? 0.0 : emitter_power > 0.0 ? emitter_power : 1.0);
     extended_ = DiscreteDistribution(powers);
-
-    for (const PointLight& light : scene.point_lights) {
-        powers.push_back(4.0 * glm::pi<double>() * luminance(light.intensity));
-    }
-    for (const SpotLight& light : scene.spot_lights) {
-        const double mean_cosine = 0.5 * (std::cos(light.inner_angle) + std::cos(light.outer_angle));
-        powers.push_back(2.0 * glm::pi<double>() * (1.0 - mean_cosine) * luminance(light.intensity));
-    }
-    for (const DirectionalLight& light : scene.directional_lights) {
-        powers.push_back(cross_section * luminance(light.irradiance));
-    }
-    all_ = DiscreteDistribution(powers);
+    lights_without_extent_ = scene.point_lights.size() + scene.spot_lights.size() + scene.directional_lights.size();
 
     const bool rays = strategy != EmitterSampling::lights;
     rays_find_triangles_ = rays && !emitters_.empty();
@@ -115,16 +103,34 @@ void LightTable::find_emitters(std::vector<double>& powers) {
     }
 }
 
-LightSample LightTable::sample(Choice choice, const glm::vec3& receiver, const glm::vec3& normal, float pick,
-                               glm::vec2 u) const {
-    const DiscreteDistribution& lights = distribution(choice);
-    const std::size_t index = lights.sample(pick);
-    const double probability = lights.probability(index);
-    if (index < environment_index_) return sample_emitter(emitters_[index], probability, receiver, u);
-    if (index == environment_index_) return sample_environment(probability, normal, u);
-    LightSample sample = light_without_extent(index - environment_index_ - 1, receiver);
-    sample.radiance /= static_cast<float>(probability);
-    return sample;
+LightSample LightTable::sample_extended(const glm::vec3& receiver, const glm::vec3& normal, float pick,
+                                        glm::vec2 u) const {
+    const std::size_t index = extended_.sample(pick);
+    const double probability = extended_.probability(index);
+    return index == environment_index_ ? sample_environment(probability, normal, u)
+                                       : sample_emitter(emitters_[index], probability, receiver, u);
+}
+
+// Weighted reservoir sampling: each light replaces the one kept so far with probability weight / (sum so far), and the
+// random number is stretched to be used again.
+LightSample LightTable::sample_without_extent(const glm::vec3& receiver, const glm::vec3& normal, float pick) const {
+    LightSample kept;
+    double sum = 0.0, kept_weight = 0.0, u = pick;
+    for (std::size_t i = 0; i < lights_without_extent_; ++i) {
+        const LightSample light = light_without_extent(i, receiver);
+        const double weight = luminance(light.radiance) * std::max(0.0f, glm::dot(normal, light.direction));
+        if (!(weight > 0.0)) continue;
+        sum += weight;
+        const double share = weight / sum;
+        if (u < share) {
+            kept = light, kept_weight = weight;
+            u /= share;
+        } else {
+            u = (u - share) / (1.0 - share);
+        }
+    }
+    if (kept_weight > 0.0) kept.radiance *= static_cast<float>(sum / kept_weight);
+    return kept;
 }
 
 LightSample LightTable::sample_emitter(const Emitter& emitter, double probability, const glm::vec3& receiver,
@@ -167,31 +173,25 @@ LightSample LightTable::sample_environment(double probability, const glm::vec3& 
     return sample;
 }
 
-glm::vec3 LightTable::weighted_emission(Choice choice, const SurfaceHit& hit, const SurfacePoint& point,
-                                        const glm::vec3& direction, float cosine) const {
+glm::vec3 LightTable::weighted_emission(const SurfaceHit& hit, const SurfacePoint& point, const glm::vec3& direction,
+                                        float cosine) const {
     if (!rays_find_triangles_ || point.emission == glm::vec3(0.0f)) return glm::vec3(0.0f);
     if (strategy_ == EmitterSampling::directions) return point.emission;
     const std::size_t index = first_emitter_[hit.instance] + hit.triangle;
     const float cosine_there = std::abs(glm::dot(point.geometric_normal, direction));
     if (!(cosine_there > 0.0f)) return point.emission;
-    const float density = static_cast<float>(distribution(choice).probability(index)) * hit.distance * hit.distance /
+    const float density = static_cast<float>(extended_.probability(index)) * hit.distance * hit.distance /
                           (emitters_[index].area * cosine_there);
     return point.emission * power_heuristic(cosine * glm::one_over_pi<float>(), density);
 }
 
-glm::vec3 LightTable::weighted_environment(Choice choice, const glm::vec3& direction, float cosine) const {
+glm::vec3 LightTable::weighted_environment(const glm::vec3& direction, float cosine) const {
     if (!rays_find_environment_) return glm::vec3(0.0f);
     const glm::vec3 radiance = scene_.scene().environment_radiance(direction);
-    const double probability =
-        distribution(choice).empty() ? 0.0 : distribution(choice).probability(environment_index_);
+    const double probability = extended_.empty() ? 0.0 : extended_.probability(environment_index_);
     if (!(probability > 0.0)) return radiance;
     const float density = static_cast<float>(probability) * environment_.density(direction);
     return radiance * power_heuristic(cosine * glm::one_over_pi<float>(), density);
-}
-
-std::size_t LightTable::lights_without_extent() const {
-    const Scene& scene = scene_.scene();
-    return scene.point_lights.size() + scene.spot_lights.size() + scene.directional_lights.size();
 }
 
 LightSample LightTable::light_without_extent(std::size_t index, const glm::vec3& receiver) const {

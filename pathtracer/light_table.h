@@ -1,8 +1,9 @@
-// All lights of a scene, as next-event estimation chooses among them.
+// All lights of a scene, as next-event estimation samples them.
 //
-// One light is chosen with probability proportional to its power. Emissive surfaces and image environments have an
-// extent: rays may find them too, so their samples carry a density per solid angle for multiple importance sampling.
-// Point, spot and directional lights have none.
+// Lights with an extent (emissive surfaces, image environments) may also be found by rays, so their samples carry a
+// density per solid angle for multiple importance sampling. One of them is chosen by power, image and surfaces half and
+// half. Lights without extent (point, spot, directional) are told apart: their unshadowed contribution at a point is
+// known, and one is chosen in proportion to it, so that a lamp in a dark corner is not lost beside the sun.
 #pragma once
 
 #include <cstdint>
@@ -27,29 +28,28 @@ struct LightSample {
 
 class LightTable {
 public:
-    // Which lights are chosen among: `extended` leaves out those without extent.
-    enum class Choice { all, extended };
-
     LightTable(const TracedScene& scene, const EnvironmentDistribution& environment, EmitterSampling strategy);
 
-    bool empty(Choice choice) const { return distribution(choice).empty(); }
+    bool has_extended_lights() const {
+        return !extended_.empty();
+    }  // to be sampled: none for EmitterSampling::directions
     // Where true, cosine-distributed rays have to be followed to emitters (and to the environment).
     bool rays_find_emitters() const { return rays_find_triangles_ || rays_find_environment_; }
     bool rays_find_triangles() const { return rays_find_triangles_; }
 
-    // `normal` is that of the receiving surface.
-    LightSample sample(Choice choice, const glm::vec3& receiver, const glm::vec3& normal, float pick,
-                       glm::vec2 u) const;
+    // Of all lights with an extent; `normal` is the receiving surface's.
+    LightSample sample_extended(const glm::vec3& receiver, const glm::vec3& normal, float pick, glm::vec2 u) const;
 
-    // Radiance of the emitter at `hit`, or of the environment, weighted against sample(choice, ...), for a ray that was
+    // Radiance of the emitter at `hit`, or of the environment, weighted against sample_extended, for a ray that was
     // drawn with density cosine / pi.
-    glm::vec3 weighted_emission(Choice choice, const SurfaceHit& hit, const SurfacePoint& point,
-                                const glm::vec3& direction, float cosine) const;
-    glm::vec3 weighted_environment(Choice choice, const glm::vec3& direction, float cosine) const;
+    glm::vec3 weighted_emission(const SurfaceHit& hit, const SurfacePoint& point, const glm::vec3& direction,
+                                float cosine) const;
+    glm::vec3 weighted_environment(const glm::vec3& direction, float cosine) const;
 
-    // Lights without extent, one by one: for exact sums.
-    std::size_t lights_without_extent() const;
+    // Lights without extent, one by one, for exact sums; and one of them for the sum.
+    std::size_t lights_without_extent() const { return lights_without_extent_; }
     LightSample light_without_extent(std::size_t index, const glm::vec3& receiver) const;
+    LightSample sample_without_extent(const glm::vec3& receiver, const glm::vec3& normal, float pick) const;
 
 private:
     struct Emitter {
@@ -57,7 +57,6 @@ private:
         float area;
     };
 
-    const DiscreteDistribution& distribution(Choice choice) const { return choice == Choice::all ? all_ : extended_; }
     void find_emitters(std::vector<double>& powers);
     LightSample sample_emitter(const Emitter& emitter, double probability, const glm::vec3& receiver,
                                glm::vec2 u) const;
@@ -68,8 +67,9 @@ private:
     EmitterSampling strategy_;
     std::vector<Emitter> emitters_;
     std::vector<std::uint32_t> first_emitter_;  // per instance; emitters of one instance lie one after the other
-    std::size_t environment_index_ = 0;         // after the emitters; then come the lights without extent
-    DiscreteDistribution all_, extended_;
+    std::size_t environment_index_ = 0;         // in extended_: after the emitters
+    std::size_t lights_without_extent_ = 0;
+    DiscreteDistribution extended_;
     bool rays_find_triangles_ = false, rays_find_environment_ = false;
 };
 

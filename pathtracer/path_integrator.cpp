@@ -10,11 +10,11 @@ namespace plumb {
 namespace {
 
 // Dimensions of the sequence that vertex k uses; 0 is the pixel's.
-constexpr std::uint32_t dimensions_per_vertex = 3;
+constexpr std::uint32_t dimensions_per_vertex = 4;
 constexpr std::uint32_t first_dimension(int vertex) {
     return 1 + dimensions_per_vertex * static_cast<std::uint32_t>(vertex);
 }
-constexpr std::uint32_t light_pick = 0, light_point = 1, next_direction = 2;
+constexpr std::uint32_t extended_pick = 0, extended_point = 1, other_pick = 2, next_direction = 3;
 
 }  // namespace
 
@@ -36,13 +36,23 @@ glm::vec3 PathIntegrator::reflected(const SurfacePoint& point, const LightSample
     return light.radiance * (pdf_of_ray * (rays_compete ? power_heuristic(light.density, pdf_of_ray) : 1.0f));
 }
 
-glm::vec3 PathIntegrator::next_event(const SurfacePoint& point, LightTable::Choice choice,
-                                     const SampleSequence& sequence, std::uint32_t dimension, int& rays) const {
-    if (lights_.empty(choice)) return glm::vec3(0.0f);
-    const LightSample light =
-        lights_.sample(choice, point.position, point.shading_normal, sequence.number(dimension + light_pick),
-                       sequence.point(dimension + light_point));
-    return reflected(point, light, rays);
+glm::vec3 PathIntegrator::next_event(const SurfacePoint& point, int vertex, const SampleSequence& sequence,
+                                     int& rays) const {
+    const std::uint32_t dimension = first_dimension(vertex);
+    glm::vec3 sum(0.0f);
+    if (lights_.has_extended_lights()) {
+        const LightSample light =
+            lights_.sample_extended(point.position, point.shading_normal, sequence.number(dimension + extended_pick),
+                                    sequence.point(dimension + extended_point));
+        sum += reflected(point, light, rays);
+    }
+    const bool exact_already = vertex == 0 && plan_.exact_lights_at_first_point;
+    if (lights_.lights_without_extent() > 0 && !exact_already) {
+        const LightSample light = lights_.sample_without_extent(point.position, point.shading_normal,
+                                                                sequence.number(dimension + other_pick));
+        sum += reflected(point, light, rays);
+    }
+    return sum;
 }
 
 glm::vec3 PathIntegrator::exact_direct(const SurfacePoint& x, std::uint64_t& rays) const {
@@ -67,10 +77,8 @@ int PathIntegrator::estimate(const SurfacePoint& x, const SampleSequence& sequen
     SurfacePoint vertex = x;
     glm::vec3 throughput(1.0f);
     for (int k = 0; k <= plan_.bounces; ++k) {
-        const std::uint32_t dimension = first_dimension(k);
-        const LightTable::Choice choice = lights_at(k);
         const bool gathers = k == 0 ? direct : indirect;
-        if (gathers) estimate.radiance[k] += throughput * next_event(vertex, choice, sequence, dimension, rays);
+        if (gathers) estimate.radiance[k] += throughput * next_event(vertex, k, sequence, rays);
 
         const bool looks_for_emitters = gathers && lights_.rays_find_emitters();
         const bool goes_on = indirect && k < plan_.bounces;
@@ -78,7 +86,7 @@ int PathIntegrator::estimate(const SurfacePoint& x, const SampleSequence& sequen
         if (!looks_for_emitters && !goes_on && !tests_visibility) break;
 
         const glm::vec3 direction =
-            sample_cosine_hemisphere(vertex.shading_normal, sequence.point(dimension + next_direction));
+            sample_cosine_hemisphere(vertex.shading_normal, sequence.point(first_dimension(k) + next_direction));
         if (glm::dot(vertex.geometric_normal, direction) <= 0.0f) {  // into the triangle itself
             if (tests_visibility) estimate.ambient_visibility = 1.0f - obscurance(0.0f);
             break;
@@ -96,8 +104,8 @@ int PathIntegrator::estimate(const SurfacePoint& x, const SampleSequence& sequen
             const bool hit = scene_.occluded(origin, direction, reach);
             if (tests_visibility && hit) estimate.ambient_visibility = 1.0f - obscurance(0.0f);
             if (looks_for_emitters && !hit) {
-                estimate.radiance[k] += throughput * lights_.weighted_environment(
-                                                         choice, direction, glm::dot(vertex.shading_normal, direction));
+                estimate.radiance[k] +=
+                    throughput * lights_.weighted_environment(direction, glm::dot(vertex.shading_normal, direction));
             }
             break;
         }
@@ -107,13 +115,13 @@ int PathIntegrator::estimate(const SurfacePoint& x, const SampleSequence& sequen
         const float cosine = glm::dot(vertex.shading_normal, direction);
         if (hit.missed()) {
             if (looks_for_emitters) {
-                estimate.radiance[k] += throughput * lights_.weighted_environment(choice, direction, cosine);
+                estimate.radiance[k] += throughput * lights_.weighted_environment(direction, cosine);
             }
             break;
         }
         const SurfacePoint next = scene_.surface_point(hit, direction);
         if (looks_for_emitters) {
-            estimate.radiance[k] += throughput * lights_.weighted_emission(choice, hit, next, direction, cosine);
+            estimate.radiance[k] += throughput * lights_.weighted_emission(hit, next, direction, cosine);
         }
         throughput *= next.albedo;
         if (!goes_on || throughput == glm::vec3(0.0f)) break;

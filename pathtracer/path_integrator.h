@@ -54,13 +54,8 @@ public:
     static constexpr std::uint32_t pixel_dimension = 0;
 
 private:
-    glm::vec3 next_event(const SurfacePoint& point, LightTable::Choice choice, const SampleSequence& sequence,
-                         std::uint32_t dimension, int& rays) const;
+    glm::vec3 next_event(const SurfacePoint& point, int vertex, const SampleSequence& sequence, int& rays) const;
     glm::vec3 reflected(const SurfacePoint& point, const LightSample& light, int& rays) const;
-    LightTable::Choice lights_at(int vertex) const {
-        return vertex == 0 && plan_.exact_lights_at_first_point ? LightTable::Choice::extended
-                                                                : LightTable::Choice::all;
-    }
     float obscurance(float distance) const { return evaluate_falloff(plan_.ao_falloff, distance, plan_.ao_radius); }
 
     const TracedScene& scene_;

@@ -197,8 +197,7 @@ void ReferenceRun::find_exact_parts() {
 bool ReferenceRun::has_noise() const {
     const EstimationPlan& plan = plan_.estimation;
     if (settings_.antialias) return !plan_.stochastic.empty();
-    const bool noisy_direct =
-        plan.direct && (!lights_.empty(LightTable::Choice::extended) || lights_.rays_find_emitters());
+    const bool noisy_direct = plan.direct && (lights_.has_extended_lights() || lights_.rays_find_emitters());
     return plan.ao || plan.indirect || noisy_direct;
 }
 
