@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "frames/frame.h"
@@ -43,11 +44,13 @@ public:
     // Each pass, whether it runs, and why.
     const std::vector<PassDecision>& decisions() const;
 
-    // Renders one frame. `previous` is the view of the frame before (for motion vectors), `truth` the frame whose planes
-    // feed the stages that the method takes from the truth.
+    // Renders one frame. `previous` is the view of the frame before (for motion vectors), `truth` the frame whose
+    // planes feed the stages that the method takes from the truth.
     RasterResult render(const View& view, const View* previous = nullptr, const Frame* truth = nullptr);
     // Runs all passes once more, without reading anything back: for timing.
-    std::vector<PassTiming> time_passes(const View& view);
+    std::vector<PassTiming> time_passes(const View& view, const Frame* truth = nullptr);
+    // How the passes are timed: "GPU timer queries" or "glFinish and steady clock".
+    std::string_view timer_description() const;
 
 private:
     struct Implementation;

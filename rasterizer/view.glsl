@@ -5,7 +5,7 @@ layout(std140, binding = 0) uniform ViewBlock {
     mat4 camera_from_world;
     mat4 world_from_camera;
     mat4 clip_from_camera;
-    mat4 previous_camera_from_world;
+    mat4 previous_camera_from_camera;
     vec2 view_size;           // pixels, with the guard band
     vec2 tan_half;            // half the width and height at 1 m depth
     vec2 previous_tan_half;

@@ -10,7 +10,7 @@ struct ViewBlock {
     glm::mat4 camera_from_world;
     glm::mat4 world_from_camera;
     glm::mat4 clip_from_camera;
-    glm::mat4 previous_camera_from_world;
+    glm::mat4 previous_camera_from_camera;
     glm::vec2 view_size;
     glm::vec2 tan_half;
     glm::vec2 previous_tan_half;
@@ -32,7 +32,9 @@ void ViewUniforms::update(const View& view, const View& previous, int guard_band
     block.camera_from_world = view.camera_from_world();
     block.world_from_camera = view.camera().world_from_camera;
     block.clip_from_camera = view.clip_from_camera();
-    block.previous_camera_from_world = previous.camera_from_world();
+    // In double precision: the product of large translations leaves a small difference.
+    block.previous_camera_from_camera = glm::mat4(glm::inverse(glm::dmat4(previous.camera().world_from_camera)) *
+                                                  glm::dmat4(view.camera().world_from_camera));
     block.view_size = {static_cast<float>(view.width()), static_cast<float>(view.height())};
     block.tan_half = view.tan_half();
     block.previous_tan_half = previous.tan_half();

@@ -1,0 +1,33 @@
+#include "rasterizer/motion_pass.h"
+
+#include <array>
+
+namespace plumb {
+
+MotionPass::MotionPass(const PassResources& resources, int layer)
+    : depth_(resources.planes.get("depth")),
+      layer_(layer),
+      draw_(resources.context, resources.programs, "motion.frag") {
+    // Whichever layer's pass is made first allocates for both.
+    if (!resources.planes.has("motion")) resources.planes.create("motion", GL_RG32F, resources.layers_of("motion"));
+    target_ = GlFramebuffer(resources.context, std::array{GlAttachment{&resources.planes.get("motion"), layer}}, {},
+                            "motion");
+}
+
+void MotionPass::execute(const PassFrame&) {
+    depth_.bind(0);
+    draw_.program().set("layer", layer_);
+    draw_.draw(target_);
+}
+
+PassDeclaration declare_motion(int layer) {
+    const std::string prefix(layer == 0 ? "" : second_layer_prefix);
+    PassDeclaration pass;
+    pass.name = layer == 0 ? "motion" : "motion.layer2";
+    pass.inputs = {prefix + "depth"};
+    pass.outputs = {prefix + "motion"};
+    pass.create = [layer](const PassResources& resources) { return std::make_unique<MotionPass>(resources, layer); };
+    return pass;
+}
+
+}  // namespace plumb

@@ -1,0 +1,134 @@
+#include "rasterizer/pipeline.h"
+
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "rasterizer/gl_error.h"
+#include "rasterizer/pass_plan.h"
+#include "rasterizer/pass_timer.h"
+#include "rasterizer/passes.h"
+#include "rasterizer/plane_reader.h"
+#include "rasterizer/scene_geometry.h"
+#include "rasterizer/view_uniforms.h"
+
+namespace plumb {
+namespace {
+
+std::vector<std::string> planes_to_make(const Quantities& quantities) {
+    std::vector<std::string> planes;
+    for (const std::string& plane : quantities.planes) {
+        for (std::string& behind : planes_behind(plane)) planes.push_back(std::move(behind));
+    }
+    return planes;
+}
+
+}  // namespace
+
+struct Pipeline::Implementation {
+    Implementation(GlContext& context_in, const Scene& scene_in, const Method& method_in,
+                   const Quantities& quantities_in, int width_in, int height_in)
+        : context(context_in),
+          scene(scene_in),
+          method(method_in),
+          quantities(quantities_in),
+          width(width_in),
+          height(height_in),
+          declarations(declare_passes(scene, method, quantities)),
+          plan(plan_passes(declarations, planes_to_make(quantities))),
+          planes(context, width + 2 * method.gbuffer.guard_band, height + 2 * method.gbuffer.guard_band),
+          programs(context),
+          view_uniforms(context),
+          timer(context, plan.order.size()) {
+        context.make_current();
+        const PassResources resources{
+            context, scene, method, quantities, planes, programs, plan.read, [this]() -> const SceneGeometry& {
+                if (!geometry) geometry.emplace(context, scene);
+                return *geometry;
+            }};
+        for (const std::size_t index : plan.order) {
+            const PassDeclaration& declaration = declarations[index];
+            passes.push_back(declaration.create(resources));
+            context.check("making of " + declaration.name);
+        }
+    }
+
+    // Leaves times in `timer`.
+    void run(const View& view, const View* previous, const Frame* truth) {
+        if (view.width() != width || view.height() != height) {
+            throw MethodError(
+                fmt::format("the pipeline was made for views of {}x{}, this one is {}x{}; make another one", width,
+                            height, view.width(), view.height()));
+        }
+        context.make_current();
+        const int guard_band = method.gbuffer.guard_band;
+        const View wide = view.with_guard_band(guard_band);
+        const View wide_previous = (previous ? *previous : view).with_guard_band(guard_band);
+        view_uniforms.update(wide, wide_previous, guard_band);
+        const PassFrame frame{wide, wide_previous, truth};
+        for (std::size_t i = 0; i < passes.size(); ++i) {
+            view_uniforms.bind();
+            timer.begin(i);
+            passes[i]->execute(frame);
+            timer.end(i);
+            context.check(declarations[plan.order[i]].name);
+        }
+    }
+
+    std::vector<PassTiming> timings() const {
+        std::vector<PassTiming> result;
+        const std::vector<double> milliseconds = timer.milliseconds();
+        for (std::size_t i = 0; i < passes.size(); ++i) {
+            result.push_back({declarations[plan.order[i]].name, milliseconds[i]});
+        }
+        return result;
+    }
+
+    GlContext& context;
+    const Scene& scene;
+    const Method method;
+    const Quantities quantities;
+    const int width, height;
+    const std::vector<PassDeclaration> declarations;
+    const PassPlan plan;
+    PlaneTextures planes;
+    ProgramCache programs;
+    ViewUniforms view_uniforms;
+    std::optional<SceneGeometry> geometry;
+    std::vector<std::unique_ptr<Pass>> passes;
+    PassTimer timer;
+};
+
+Pipeline::Pipeline(GlContext& context, const Scene& scene, const Method& method, const Quantities& quantities,
+                   int width, int height)
+    : implementation_(std::make_unique<Implementation>(context, scene, method, quantities, width, height)) {}
+
+Pipeline::~Pipeline() = default;
+
+const std::vector<PassDecision>& Pipeline::decisions() const { return implementation_->plan.decisions; }
+
+std::string_view Pipeline::timer_description() const { return implementation_->timer.description(); }
+
+RasterResult Pipeline::render(const View& view, const View* previous, const Frame* truth) {
+    Implementation& self = *implementation_;
+    self.run(view, previous, truth);
+    RasterResult result;
+    result.timings = self.timings();
+    for (const PassTiming& timing : result.timings) result.milliseconds += timing.milliseconds;
+    result.frame = Frame(view.width(), view.height());
+    for (const std::string& plane : self.quantities.planes) {
+        result.frame.set(plane, read_plane(self.planes, plane, view, self.method.gbuffer.guard_band));
+    }
+    result.frame.facts["renderer"] = self.context.info().renderer;
+    result.frame.facts["method"] = self.method.name;
+    result.frame.facts["view"] = view.camera().name;
+    result.frame.facts["scene"] = self.scene.name;
+    return result;
+}
+
+std::vector<PassTiming> Pipeline::time_passes(const View& view, const Frame* truth) {
+    implementation_->run(view, nullptr, truth);
+    return implementation_->timings();
+}
+
+}  // namespace plumb

@@ -1,0 +1,65 @@
+#include "rasterizer/plane_reader.h"
+
+#include <cmath>
+
+#include "rasterizer/normal_encoding.h"
+#include "rasterizer/texture_transfer.h"
+
+namespace plumb {
+namespace {
+
+struct PlaneName {
+    int layer;
+    std::string base;
+};
+
+PlaneName split(const std::string& plane) {
+    if (plane.starts_with(second_layer_prefix)) return {1, plane.substr(second_layer_prefix.size())};
+    return {0, plane};
+}
+
+int channels_of(const std::string& base) {
+    if (base == "depth" || base == "ao") return 1;
+    if (base == "motion") return 2;
+    return 3;
+}
+
+void put(Image& image, int x, int y, const glm::vec3& value) {
+    for (int c = 0; c < 3; ++c) image.at(x, y, c) = value[c];
+}
+
+}  // namespace
+
+std::vector<std::string> planes_behind(const std::string& plane) {
+    const auto [layer, base] = split(plane);
+    const std::string prefix(layer == 0 ? "" : second_layer_prefix);
+    if (base == "position") return {prefix + "depth"};
+    if (base == "normal") return {prefix + "depth", plane};
+    return {plane};
+}
+
+Image read_plane(const PlaneTextures& planes, const std::string& plane, const View& view, int guard_band) {
+    const auto [layer, base] = split(plane);
+    if (base != "normal" && base != "position")
+        return read_back(planes.get(base), layer, channels_of(base), guard_band);
+
+    const Image depth = read_back(planes.get("depth"), layer, 1, guard_band);
+    Image result(depth.width(), depth.height(), 3);
+    const Image encoded = base == "normal" ? read_back(planes.get("normal"), layer, 2, guard_band) : Image();
+    for (int y = 0; y < depth.height(); ++y) {
+        for (int x = 0; x < depth.width(); ++x) {
+            const float d = depth.at(x, y);
+            if (std::isinf(d)) continue;
+            if (base == "normal") {
+                put(result, x, y, decode_normal({encoded.at(x, y, 0), encoded.at(x, y, 1)}));
+            } else {
+                const glm::vec3 p =
+                    view.camera_space_point(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f, d);
+                put(result, x, y, glm::vec3(view.camera().world_from_camera * glm::vec4(p, 1.0f)));
+            }
+        }
+    }
+    return result;
+}
+
+}  // namespace plumb

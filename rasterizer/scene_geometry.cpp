@@ -1,0 +1,239 @@
+#include "rasterizer/scene_geometry.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <tuple>
+
+#include <fmt/format.h>
+
+#include "rasterizer/gl_error.h"
+
+namespace plumb {
+namespace {
+
+struct Vertex {
+    glm::vec3 position, normal;
+    glm::vec2 uv;
+};
+
+// std140 layout of InstanceBlock in scene.glsl.
+struct InstanceBlock {
+    glm::mat4 world_from_object;
+    glm::vec4 normal_columns[3];  // mat3: inverse transpose of the upper left part
+    glm::vec4 base_colour_and_metallic;
+    glm::vec4 emission_and_roughness;
+    float alpha_cutoff;
+    int alpha_channel;
+    int two_sided;
+    int padding;
+};
+static_assert(sizeof(InstanceBlock) == 160);
+constexpr GLuint instance_binding = 1;
+
+struct MeshRange {
+    GLint first_vertex = 0;
+    std::size_t first_index = 0;
+    GLsizei index_count = 0;
+};
+
+void append_shared(const Mesh& mesh, std::vector<Vertex>& vertices, std::vector<std::uint32_t>& indices) {
+    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+        vertices.push_back({mesh.positions[i], mesh.normals[i], mesh.uvs.empty() ? glm::vec2(0.0f) : mesh.uvs[i]});
+    }
+    for (const glm::uvec3& triangle : mesh.triangles)
+        indices.insert(indices.end(), {triangle.x, triangle.y, triangle.z});
+}
+
+void append_with_face_normals(const Mesh& mesh, std::vector<Vertex>& vertices, std::vector<std::uint32_t>& indices) {
+    std::uint32_t next = 0;
+    for (const glm::uvec3& triangle : mesh.triangles) {
+        const glm::dvec3 a(mesh.positions[triangle.x]), b(mesh.positions[triangle.y]), c(mesh.positions[triangle.z]);
+        const glm::dvec3 normal = glm::cross(b - a, c - a);
+        const double length = glm::length(normal);
+        if (!(length > 0.0)) continue;  // covers no pixel
+        for (int k = 0; k < 3; ++k) {
+            const glm::vec2 uv = mesh.uvs.empty() ? glm::vec2(0.0f) : mesh.uvs[triangle[k]];
+            vertices.push_back({mesh.positions[triangle[k]], glm::vec3(normal / length), uv});
+            indices.push_back(next++);
+        }
+    }
+}
+
+GLint gl_wrap(TextureWrap wrap) {
+    switch (wrap) {
+        case TextureWrap::repeat:
+            return GL_REPEAT;
+        case TextureWrap::clamp:
+            return GL_CLAMP_TO_EDGE;
+        case TextureWrap::mirror:
+            return GL_MIRRORED_REPEAT;
+    }
+    return GL_REPEAT;
+}
+
+Bounds world_bounds(const Mesh& mesh, const glm::mat4& world_from_object) {
+    Bounds bounds;
+    for (const glm::vec3& p : mesh.positions) bounds.add(glm::vec3(world_from_object * glm::vec4(p, 1.0f)));
+    return bounds;
+}
+
+}  // namespace
+
+MaterialVariant variant_of(const Material& material) {
+    MaterialVariant variant;
+    variant.base_colour_texture = material.base_colour_texture != no_texture;
+    variant.metallic_roughness_texture = material.metallic_roughness_texture != no_texture;
+    variant.emission = material.is_emissive();
+    variant.emission_texture = variant.emission && material.emission_texture != no_texture;
+    variant.alpha_texture = material.alpha_mask && material.alpha_texture != no_texture;
+    variant.alpha_mask = material.alpha_mask && (variant.alpha_texture || variant.base_colour_texture);
+    return variant;
+}
+
+ShaderDefines MaterialVariant::defines() const {
+    ShaderDefines defines;
+    const auto add = [&](bool present, const char* name) {
+        if (present) defines.emplace_back(name, "1");
+    };
+    add(base_colour_texture, "BASE_COLOUR_TEXTURE");
+    add(metallic_roughness_texture, "METALLIC_ROUGHNESS_TEXTURE");
+    add(emission, "EMISSION");
+    add(emission_texture, "EMISSION_TEXTURE");
+    add(alpha_mask, "ALPHA_MASK");
+    add(alpha_texture, "ALPHA_TEXTURE");
+    add(needs_texture_coordinates(), "TEXTURE_COORDINATES");
+    return defines;
+}
+
+MaterialVariant MaterialVariant::coverage() const {
+    MaterialVariant result;
+    result.alpha_mask = alpha_mask;
+    result.alpha_texture = alpha_texture;
+    result.base_colour_texture = alpha_mask && !alpha_texture;
+    return result;
+}
+
+SceneGeometry::SceneGeometry(GlContext& context, const Scene& scene)
+    : context_(context), scene_(scene), vertex_array_(context) {
+    upload_meshes();
+    upload_instances();
+    upload_textures();
+    context_.check("upload of the scene");
+}
+
+void SceneGeometry::upload_meshes() {
+    std::vector<Vertex> vertices;
+    std::vector<std::uint32_t> indices;
+    std::vector<MeshRange> ranges;
+    for (const Mesh& mesh : scene_.meshes) {
+        MeshRange range{static_cast<GLint>(vertices.size()), indices.size(), 0};
+        if (mesh.normals.empty()) {
+            append_with_face_normals(mesh, vertices, indices);
+        } else {
+            append_shared(mesh, vertices, indices);
+        }
+        range.index_count = static_cast<GLsizei>(indices.size() - range.first_index);
+        ranges.push_back(range);
+    }
+    vertices_ = GlBuffer::from(context_, vertices);
+    indices_ = GlBuffer::from(context_, indices);
+
+    for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
+        const Instance& instance = scene_.instances[i];
+        const Mesh& mesh = scene_.meshes[instance.mesh];
+        const Material& material = scene_.materials[mesh.material];
+        const MeshRange& range = ranges[instance.mesh];
+        if (range.index_count == 0) continue;
+        const MaterialVariant variant = variant_of(material);
+        auto known = std::ranges::find(variants_, variant);
+        if (known == variants_.end()) known = variants_.insert(variants_.end(), variant);
+        SceneDraw draw;
+        draw.instance = static_cast<int>(i);
+        draw.material = mesh.material;
+        draw.variant = static_cast<int>(known - variants_.begin());
+        draw.mirrored = glm::determinant(glm::mat3(instance.world_from_object)) < 0.0f;
+        draw.emissive = material.is_emissive();
+        draw.index_count = range.index_count;
+        draw.first_index = range.first_index;
+        draw.first_vertex = range.first_vertex;
+        draw.bounds = world_bounds(mesh, instance.world_from_object);
+        draws_.push_back(draw);
+    }
+    std::ranges::stable_sort(draws_, {}, [](const SceneDraw& draw) { return std::tuple(draw.variant, draw.material); });
+
+    const GladGLContext& gl = context_.gl;
+    const GLuint array = vertex_array_.id();
+    gl.VertexArrayVertexBuffer(array, 0, vertices_.id(), 0, sizeof(Vertex));
+    gl.VertexArrayElementBuffer(array, indices_.id());
+    const auto attribute = [&](GLuint location, GLint components, std::size_t offset) {
+        gl.EnableVertexArrayAttrib(array, location);
+        gl.VertexArrayAttribFormat(array, location, components, GL_FLOAT, GL_FALSE, static_cast<GLuint>(offset));
+        gl.VertexArrayAttribBinding(array, location, 0);
+    };
+    attribute(0, 3, offsetof(Vertex, position));
+    attribute(1, 3, offsetof(Vertex, normal));
+    attribute(2, 2, offsetof(Vertex, uv));
+}
+
+void SceneGeometry::upload_instances() {
+    GLint alignment = 1;
+    context_.gl.GetIntegerv(GL_UNIFORM_BUFFER_OFFSET_ALIGNMENT, &alignment);
+    const auto aligned = static_cast<std::size_t>(alignment);
+    instance_stride_ = (sizeof(InstanceBlock) + aligned - 1) / aligned * aligned;
+    std::vector<std::byte> bytes(instance_stride_ * scene_.instances.size());
+    for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
+        const Instance& instance = scene_.instances[i];
+        const Material& material = scene_.materials[scene_.meshes[instance.mesh].material];
+        // Inverted in double precision: scales of 1e-3 and less make the determinant tiny.
+        const glm::mat3 normal_matrix(glm::transpose(glm::inverse(glm::dmat3(glm::mat3(instance.world_from_object)))));
+        InstanceBlock block{};
+        block.world_from_object = instance.world_from_object;
+        for (int column = 0; column < 3; ++column)
+            block.normal_columns[column] = glm::vec4(normal_matrix[column], 0.0f);
+        block.base_colour_and_metallic = glm::vec4(material.base_colour, material.metallic);
+        block.emission_and_roughness = glm::vec4(material.emission, material.roughness);
+        block.alpha_cutoff = material.alpha_cutoff;
+        block.alpha_channel = material.alpha_texture != no_texture ? material.alpha_channel : 3;
+        block.two_sided = material.two_sided ? 1 : 0;
+        std::copy_n(reinterpret_cast<const std::byte*>(&block), sizeof(block), &bytes[i * instance_stride_]);
+    }
+    instances_ = GlBuffer::from(context_, bytes);
+}
+
+void SceneGeometry::upload_textures() {
+    const GladGLContext& gl = context_.gl;
+    GLint limit = 0;
+    gl.GetIntegerv(GL_MAX_TEXTURE_SIZE, &limit);
+    for (const Texture& texture : scene_.textures) {
+        if (texture.width > limit || texture.height > limit) {
+            throw GlError(fmt::format("texture '{}' is {}x{}, this OpenGL takes {} at most; scale it down",
+                                      texture.name, texture.width, texture.height, limit));
+        }
+        GlTexture& uploaded =
+            textures_.emplace_back(GlTexture::flat(context_, GL_RGBA16F, texture.width, texture.height));
+        gl.TextureSubImage2D(uploaded.id(), 0, 0, 0, texture.width, texture.height, GL_RGBA, GL_HALF_FLOAT,
+                             texture.texels.data());
+        uploaded.set_filter(GL_LINEAR, GL_LINEAR);
+        uploaded.set_wrap(gl_wrap(texture.wrap_u), gl_wrap(texture.wrap_v));
+    }
+}
+
+void SceneGeometry::bind_textures(const Material& material, const MaterialVariant& variant) const {
+    if (variant.base_colour_texture) textures_[material.base_colour_texture].bind(0);
+    if (variant.metallic_roughness_texture) textures_[material.metallic_roughness_texture].bind(1);
+    if (variant.emission_texture) textures_[material.emission_texture].bind(2);
+    if (variant.alpha_texture) textures_[material.alpha_texture].bind(3);
+}
+
+void SceneGeometry::draw(const SceneDraw& draw) const {
+    const GladGLContext& gl = context_.gl;
+    gl.BindBufferRange(GL_UNIFORM_BUFFER, instance_binding, instances_.id(),
+                       static_cast<GLintptr>(static_cast<std::size_t>(draw.instance) * instance_stride_),
+                       sizeof(InstanceBlock));
+    gl.FrontFace(draw.mirrored ? GL_CW : GL_CCW);
+    gl.DrawElementsBaseVertex(GL_TRIANGLES, draw.index_count, GL_UNSIGNED_INT,
+                              reinterpret_cast<const void*>(draw.first_index * sizeof(std::uint32_t)),
+                              draw.first_vertex);
+}
+
+}  // namespace plumb

@@ -1,0 +1,91 @@
+#include "rasterizer/truth_pass.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "rasterizer/gl_error.h"
+#include "rasterizer/normal_encoding.h"
+#include "rasterizer/texture_transfer.h"
+
+namespace plumb {
+namespace {
+
+std::string_view without_layer(std::string_view plane) {
+    return plane.starts_with(second_layer_prefix) ? plane.substr(second_layer_prefix.size()) : plane;
+}
+
+GLenum format_of(std::string_view plane) {
+    if (plane == "depth") return GL_R32F;
+    if (plane == "normal") return GL_RG16;
+    return GL_RGBA32F;  // as it comes: the point is to have no error of one's own
+}
+
+Image encoded_normals(const Image& normals) {
+    Image encoded(normals.width(), normals.height(), 2);
+    for (int y = 0; y < normals.height(); ++y) {
+        for (int x = 0; x < normals.width(); ++x) {
+            const glm::vec3 n(normals.at(x, y, 0), normals.at(x, y, 1), normals.at(x, y, 2));
+            const glm::vec2 e = n == glm::vec3(0.0f) ? glm::vec2(0.5f) : encode_normal(n);  // zero: nothing is there
+            encoded.at(x, y, 0) = e.x, encoded.at(x, y, 1) = e.y;
+        }
+    }
+    return encoded;
+}
+
+}  // namespace
+
+TruthPass::TruthPass(const PassResources& resources, std::vector<std::string> planes) {
+    for (std::string& plane : planes) {
+        if (!resources.is_read(plane)) continue;
+        const std::string base(without_layer(plane));
+        if (!resources.planes.has(base)) resources.planes.create(base, format_of(base), resources.layers_of(base));
+        const bool second = plane != base;
+        uploads_.push_back({std::move(plane), &resources.planes.get(base), second ? 1 : 0});
+    }
+}
+
+void TruthPass::execute(const PassFrame& frame) {
+    for (const Upload& upload_one : uploads_) {
+        if (frame.truth == nullptr || !frame.truth->has(upload_one.plane)) {
+            throw MethodError(fmt::format(
+                "the method takes '{}' from the truth, but the truth frame {}; render the reference with that plane",
+                upload_one.plane,
+                frame.truth == nullptr ? "is missing"
+                                       : fmt::format("has only {}", fmt::join(frame.truth->plane_names(), ", "))));
+        }
+        const Image& image = frame.truth->plane(upload_one.plane);
+        if (image.width() != upload_one.texture->width() || image.height() != upload_one.texture->height()) {
+            throw MethodError(fmt::format("the truth frame is {}x{}, the pipeline renders {}x{}", image.width(),
+                                          image.height(), upload_one.texture->width(), upload_one.texture->height()));
+        }
+        upload(*upload_one.texture, upload_one.layer,
+               without_layer(upload_one.plane) == "normal" ? encoded_normals(image) : image);
+    }
+}
+
+PassDeclaration declare_true_gbuffer(const Method& method) {
+    PassDeclaration pass;
+    pass.name = "gbuffer.truth";
+    pass.outputs = {"depth", "normal", "albedo", "emission"};
+    if (method.gbuffer.layers == 2) {
+        for (const char* plane : {"layer2.depth", "layer2.normal", "layer2.albedo"}) pass.outputs.emplace_back(plane);
+    }
+    pass.create = [planes = pass.outputs](const PassResources& resources) {
+        return std::make_unique<TruthPass>(resources, planes);
+    };
+    if (method.gbuffer.source == SourceOfStage::method) pass.disabled = "gbuffer.source is \"method\"";
+    return pass;
+}
+
+PassDeclaration declare_true_direct(const Method& method) {
+    PassDeclaration pass;
+    pass.name = "direct.truth";
+    pass.outputs = {"direct"};
+    pass.create = [planes = pass.outputs](const PassResources& resources) {
+        return std::make_unique<TruthPass>(resources, planes);
+    };
+    if (method.direct.source == SourceOfStage::method) pass.disabled = "direct.source is \"method\"";
+    return pass;
+}
+
+}  // namespace plumb

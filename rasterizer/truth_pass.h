@@ -1,0 +1,32 @@
+// Planes handed in instead of rendered: uploads those of the frame's truth.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "rasterizer/pass.h"
+
+namespace plumb {
+
+class TruthPass final : public Pass {
+public:
+    TruthPass(const PassResources& resources, std::vector<std::string> planes);
+    // Throws MethodError where the frame brings no truth or lacks a plane.
+    void execute(const PassFrame& frame) override;
+
+private:
+    struct Upload {
+        std::string plane;  // with its layer's prefix
+        const GlTexture* texture;
+        int layer;
+    };
+    std::vector<Upload> uploads_;
+};
+
+// The G-buffer (both layers where the method has two) where gbuffer.source is "truth".
+PassDeclaration declare_true_gbuffer(const Method& method);
+// Direct light of the first layer where direct.source is "truth". No reference holds light of the second layer: the
+// method lights that one itself.
+PassDeclaration declare_true_direct(const Method& method);
+
+}  // namespace plumb
