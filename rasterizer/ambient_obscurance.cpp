@@ -1,0 +1,132 @@
+#include "rasterizer/ambient_obscurance.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "rasterizer/depth_mip_chain.h"
+#include "rasterizer/gl_error.h"
+
+namespace plumb {
+namespace {
+
+bool is_blurred(const Method& method) { return method.ao.blur.radius > 0; }
+
+std::string output_plane(const Method& method) { return is_blurred(method) ? "ao.unfiltered" : "ao"; }
+
+std::string depth_plane(const Method& method) {
+    return method.ao.use_mip_chain ? std::string(depth_mip_chain_plane) : "depth";
+}
+
+void require_sound(const AmbientObscuranceSettings& settings, const Quantities& quantities) {
+    const float radius = quantities.ao_radius;
+    if (!(radius > 0.0f && std::isfinite(radius))) {
+        throw MethodError(
+            fmt::format("ambient obscurance looks for occluders within a finite radius, but the quantity's "
+                        "ao_radius is {}; set it to a length in metres, for the truth as well",
+                        radius));
+    }
+    if (settings.layers < 1 || settings.layers > 2) {
+        throw MethodError(fmt::format("ao.layers is {}; use 1 or 2", settings.layers));
+    }
+    if (!(settings.epsilon > 0.0f) || !(settings.bias >= 0.0f) || !(settings.intensity >= 0.0f)) {
+        throw MethodError(fmt::format("ao.epsilon {} must be positive, ao.bias {} and ao.intensity {} not negative",
+                                      settings.epsilon, settings.bias, settings.intensity));
+    }
+    if (settings.mip_offset < 0) {
+        throw MethodError(fmt::format("ao.mip_offset is {}; use 0 or more (the source: 3)", settings.mip_offset));
+    }
+}
+
+std::string in_capitals(std::string_view name) {
+    std::string result;
+    for (const char c : name) result += static_cast<char>(c >= 'a' && c <= 'z' ? c - 'a' + 'A' : c);
+    return result;
+}
+
+ShaderDefines shader_defines(const PassResources& resources) {
+    const AmbientObscuranceSettings& settings = resources.method.ao;
+    require_sound(settings, resources.quantities);
+    ShaderDefines defines = SampleSpiral::defines(settings.samples);
+    using enum AmbientObscuranceEstimator;
+    for (const auto estimator : {mara2016, g3d_demo, sao2012, linear}) {
+        defines.emplace_back(in_capitals(to_string(estimator)), std::to_string(static_cast<int>(estimator)));
+    }
+    for (const Falloff falloff : {Falloff::hard, Falloff::quadratic, Falloff::cubic}) {
+        defines.emplace_back(in_capitals(to_string(falloff)), std::to_string(static_cast<int>(falloff)));
+    }
+    const int coarsest = coarsest_depth_mip(resources.planes.width(), resources.planes.height());
+    const ShaderDefines chosen = {{"ESTIMATOR", in_capitals(to_string(settings.estimator))},
+                                  {"FALLOFF", in_capitals(to_string(resources.quantities.ao_falloff))},
+                                  {"LAYERS", std::to_string(settings.layers)},
+                                  {"RADIUS", shader_literal(resources.quantities.ao_radius)},
+                                  {"BIAS", shader_literal(settings.bias)},
+                                  {"EPSILON", shader_literal(settings.epsilon)},
+                                  {"INTENSITY", shader_literal(settings.intensity)},
+                                  {"MIP_OFFSET", std::to_string(settings.mip_offset)},
+                                  {"COARSEST_LEVEL", std::to_string(settings.use_mip_chain ? coarsest : 0)}};
+    defines.insert(defines.end(), chosen.begin(), chosen.end());
+    return defines;
+}
+
+GlFramebuffer make_target(const PassResources& resources) {
+    const GlAttachment attachment{&resources.planes.create(output_plane(resources.method), GL_R32F, 1), 0, 0};
+    return GlFramebuffer(resources.context, {&attachment, 1}, {}, "ambient obscurance");
+}
+
+}  // namespace
+
+std::string_view to_string(AmbientObscuranceEstimator estimator) {
+    switch (estimator) {
+        case AmbientObscuranceEstimator::mara2016:
+            return "mara2016";
+        case AmbientObscuranceEstimator::g3d_demo:
+            return "g3d_demo";
+        case AmbientObscuranceEstimator::sao2012:
+            return "sao2012";
+        case AmbientObscuranceEstimator::linear:
+            return "linear";
+    }
+    return "";
+}
+
+AmbientObscurancePass::AmbientObscurancePass(const PassResources& resources)
+    : depth_(resources.planes.get(depth_plane(resources.method))),
+      normal_(resources.planes.get("normal")),
+      spiral_(resources.context, resources.method.ao.samples),
+      draw_(resources.context, resources.programs, "ambient_obscurance.frag", shader_defines(resources)),
+      target_(make_target(resources)),
+      area_(resources, glm::ivec2(blur_reach(resources.method.ao.blur))) {}
+
+void AmbientObscurancePass::execute(const PassFrame&) {
+    depth_.bind(0);
+    normal_.bind(1);
+    spiral_.bind();
+    const InnerArea::Restriction restriction(area_);
+    draw_.draw(target_);
+}
+
+std::vector<PassDeclaration> declare_ambient_obscurance(const Method& method, const Quantities& quantities) {
+    const std::string depth = depth_plane(method);
+    PassDeclaration pass{
+        .name = "ambient obscurance",
+        .inputs = {"depth", "normal", depth},
+        .outputs = {output_plane(method)},
+        .create = [](const PassResources& resources) { return std::make_unique<AmbientObscurancePass>(resources); },
+        .disabled = method.ao.enabled ? "" : "method.ao.enabled is false",
+        .remark = fmt::format("{}, {} taps, {} layer{}", to_string(method.ao.estimator), method.ao.samples,
+                              method.ao.layers, method.ao.layers == 1 ? "" : "s")};
+    if (method.ao.layers > 1) pass.inputs.push_back(std::string(second_layer_prefix) + depth);
+    std::vector<PassDeclaration> passes = {std::move(pass)};
+    if (is_blurred(method)) {
+        passes.push_back(declare_bilateral_blur({.name = "ambient obscurance blur",
+                                                 .settings = method.ao.blur,
+                                                 .quantity_radius = quantities.ao_radius,
+                                                 .input = output_plane(method),
+                                                 .output = "ao"}));
+        passes.back().disabled = passes.front().disabled;
+    }
+    return passes;
+}
+
+}  // namespace plumb

@@ -1,0 +1,60 @@
+// Scalable ambient obscurance over one or two depth layers.
+//
+// Estimates, per pixel, the ambient visibility `ao` (the share of the hemisphere that is open, weighted by the cosine
+// and the falloff g of the asked quantity) from N taps on a spiral in screen space (sample_spiral.h). With X the shaded
+// point, n its normal, Y a tap's point, v = Y - X, beta the bias, eps the epsilon and A the larger value over the
+// layers:
+//
+//     mara2016   A = g(|v|) max(0, v.n - beta) / sqrt(v.v + eps)          the default: as the paper prints it
+//                visibility = max(0, 1 - intensity sqrt(pi / N sum A))
+//     g3d_demo   A as above, times 1 + 0.35 (max(0, 1.5 n_z) - 1)        n_z: towards the viewer, so it depends on the
+//     view
+//                visibility = max(0, 1 - sqrt(3 / N sum A))^intensity    taps at least 0.75 pixels away; fades in as
+//                the
+//                                                                        radius grows from 3 to 4 pixels
+//     sao2012    A = g(|v|) max(0, v.n - beta) / (v.v + eps)             of dimension 1 / m: intensity is in metres
+//                visibility = (a^0.2 + 1.2 a^4) / 2.2 with a = max(0, 1 - intensity 5 / N sum A)
+//     linear     A as mara2016                                           what a Monte Carlo sum over uniformly
+//                visibility = max(0, 1 - intensity 2 / N sum A)          distributed directions would be
+//
+//   Sources: mara2016: Mara et al. 2016, "Deep G-Buffers for Stable Global Illumination Approximation"; g3d_demo: the
+//   code that its authors ship with G3D; sao2012: McGuire, Mara, Luebke 2012, "Scalable Ambient Obscurance", with its
+//   falloff Falloff::cubic. The falloff is always the quantity's; the paper's is Falloff::quadratic. Good for: contact
+//   shadows of what the layers hold. Bad for: occluders outside the view or behind both layers; taps are even in screen
+//   radius and angle, not in solid angle, so that no estimator here converges to the integral.
+//
+// Choices where the sources are silent: a tap outside the image (guard band included) and a tap without a surface
+// obscure nothing; background is fully visible, and so is a pixel whose radius covers less than a pixel. With the MIP
+// chain a far tap is the exact point of the pixel that its texel holds (depth_mip_chain.h), not that pixel's depth at
+// the tap's own position as in the source, which lifts taps off slanted surfaces and darkens them.
+#pragma once
+
+#include "rasterizer/bilateral_blur.h"
+#include "rasterizer/fullscreen.h"
+#include "rasterizer/pass.h"
+#include "rasterizer/sample_spiral.h"
+
+namespace plumb {
+
+// Writes the plane `ao`, or `ao.unfiltered` where the method blurs it.
+class AmbientObscurancePass final : public Pass {
+public:
+    // Throws MethodError for an infinite radius and other parameters out of range.
+    explicit AmbientObscurancePass(const PassResources& resources);
+    void execute(const PassFrame& frame) override;
+
+private:
+    const GlTexture& depth_;
+    const GlTexture& normal_;
+    SampleSpiral spiral_;
+    FullscreenDraw draw_;
+    GlFramebuffer target_;
+    InnerArea area_;
+};
+
+// The pass and its blur. Output: the plane `ao`.
+std::vector<PassDeclaration> declare_ambient_obscurance(const Method& method, const Quantities& quantities);
+
+std::string_view to_string(AmbientObscuranceEstimator estimator);
+
+}  // namespace plumb

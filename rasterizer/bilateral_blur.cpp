@@ -1,0 +1,110 @@
+#include "rasterizer/bilateral_blur.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "rasterizer/gl_error.h"
+
+namespace plumb {
+namespace {
+
+void require_sound(const BilateralBlurRequest& request) {
+    const BilateralBlurSettings& settings = request.settings;
+    if (settings.radius < 1 || settings.radius > 64 || settings.step < 1) {
+        throw MethodError(
+            fmt::format("{}: blur radius {} and step {} are out of range; use a radius of 0 (off) to 64 and "
+                        "a step of at least 1",
+                        request.name, settings.radius, settings.step));
+    }
+    for (const float sharpness : {settings.depth_sharpness, settings.normal_sharpness, settings.plane_sharpness}) {
+        if (!(sharpness >= 0.0f && std::isfinite(sharpness))) {
+            throw MethodError(
+                fmt::format("{}: blur sharpness {} must be 0 or more and finite", request.name, sharpness));
+        }
+    }
+}
+
+std::string gaussian_weights(int radius) {
+    std::string weights;
+    const double sigma = 0.5 * radius;
+    for (int i = 0; i <= radius; ++i) {
+        weights += i == 0 ? "" : ", ";
+        weights += shader_literal(static_cast<float>(std::exp(-0.5 * i * i / (sigma * sigma))));
+    }
+    return weights;
+}
+
+ShaderDefines defines_along(const char* direction, const BilateralBlurRequest& request) {
+    require_sound(request);
+    const BilateralBlurSettings& settings = request.settings;
+    return {{"DIRECTION", direction},
+            {"BLUR_RADIUS", std::to_string(settings.radius)},
+            {"STEP", std::to_string(settings.step)},
+            {"MONOTONIC", settings.monotonic ? "1" : "0"},
+            {"DEPTH_SHARPNESS", shader_literal(settings.depth_sharpness / request.quantity_radius)},
+            {"NORMAL_SHARPNESS", shader_literal(settings.normal_sharpness)},
+            {"PLANE_SHARPNESS", shader_literal(settings.plane_sharpness)},
+            {"GAUSSIAN_WEIGHTS", gaussian_weights(settings.radius)}};
+}
+
+GlFramebuffer framebuffer_of(const GlTexture& texture) {
+    const GlAttachment attachment{&texture, 0, 0};
+    return GlFramebuffer(texture.context(), {&attachment, 1}, {}, "bilateral blur");
+}
+
+}  // namespace
+
+InnerArea::InnerArea(const PassResources& resources, glm::ivec2 reach) : context_(resources.context) {
+    const glm::ivec2 size(resources.planes.width(), resources.planes.height());
+    const glm::ivec2 margin = glm::max(glm::ivec2(resources.method.gbuffer.guard_band) - reach, glm::ivec2(0));
+    corner_ = margin;
+    size_ = size - 2 * margin;
+}
+
+InnerArea::Restriction::Restriction(const InnerArea& area) : area_(area) {
+    area.context_.gl.Enable(GL_SCISSOR_TEST);
+    area.context_.gl.Scissor(area.corner_.x, area.corner_.y, area.size_.x, area.size_.y);
+}
+
+InnerArea::Restriction::~Restriction() { area_.context_.gl.Disable(GL_SCISSOR_TEST); }
+
+int blur_reach(const BilateralBlurSettings& settings) { return settings.radius * settings.step; }
+
+BilateralBlurPass::BilateralBlurPass(const PassResources& resources, const BilateralBlurRequest& request)
+    : noisy_(resources.planes.get(request.input)),
+      depth_(resources.planes.get("depth")),
+      normal_(resources.planes.get("normal")),
+      half_blurred_(GlTexture::array(resources.context, noisy_.format(), noisy_.width(), noisy_.height(), 1)),
+      along_rows_(resources.context, resources.programs, "bilateral_blur.frag", defines_along("ivec2(1, 0)", request)),
+      along_columns_(resources.context, resources.programs, "bilateral_blur.frag",
+                     defines_along("ivec2(0, 1)", request)),
+      half_blurred_target_(framebuffer_of(half_blurred_)),
+      target_(framebuffer_of(resources.planes.create(request.output, noisy_.format(), 1))),
+      area_of_rows_(resources, {0, blur_reach(request.settings)}),
+      area_(resources, {0, 0}) {}
+
+void BilateralBlurPass::execute(const PassFrame&) {
+    noisy_.bind(0);
+    depth_.bind(1);
+    normal_.bind(2);
+    {
+        const InnerArea::Restriction restriction(area_of_rows_);
+        along_rows_.draw(half_blurred_target_);
+    }
+    half_blurred_.bind(0);
+    const InnerArea::Restriction restriction(area_);
+    along_columns_.draw(target_);
+}
+
+PassDeclaration declare_bilateral_blur(const BilateralBlurRequest& request) {
+    return {.name = request.name,
+            .inputs = {request.input, "depth", "normal"},
+            .outputs = {request.output},
+            .create = [request](const PassResources& resources) {
+                return std::make_unique<BilateralBlurPass>(resources, request);
+            }};
+}
+
+}  // namespace plumb

@@ -1,0 +1,66 @@
+// One direction of the edge-aware blur; bilateral_blur.h has the weights.
+//
+// Defines: DIRECTION (ivec2), BLUR_RADIUS, STEP, MONOTONIC (0, 1), DEPTH_SHARPNESS (per metre), NORMAL_SHARPNESS,
+// PLANE_SHARPNESS, GAUSSIAN_WEIGHTS (of distance 0 to BLUR_RADIUS).
+
+#include "depth_mip_chain.glsl"
+#include "normal_encoding.glsl"
+
+layout(binding = 0) uniform sampler2DArray noisy;
+layout(binding = 1) uniform sampler2DArray depth;
+layout(binding = 2) uniform sampler2DArray normal;
+
+layout(location = 0) out vec4 smoothed;
+
+const float gaussian[BLUR_RADIUS + 1] = float[](GAUSSIAN_WEIGHTS);
+
+struct Surface {
+    float depth;
+    vec3 point, normal;  // camera space, world space
+};
+
+Surface surface_at(ivec2 pixel) {
+    Surface surface;
+    surface.depth = texelFetch(depth, ivec3(pixel, 0), 0).r;
+    surface.point = camera_space_point_at(pixel, min(surface.depth, 1e12));
+    surface.normal = decode_normal(texelFetch(normal, ivec3(pixel, 0), 0).xy);
+    return surface;
+}
+
+float edge_weight(Surface centre, Surface tap) {
+    vec3 offset = tap.point - centre.point;
+    vec3 direction = world_space_direction(offset * inversesqrt(max(dot(offset, offset), 1e-30)));
+    float off_plane = max(abs(dot(direction, centre.normal)), abs(dot(direction, tap.normal)));
+    float depth_weight = max(0.0, 1.0 - DEPTH_SHARPNESS * abs(tap.depth - centre.depth));
+    float normal_weight = max(0.0, 1.0 - NORMAL_SHARPNESS * (1.0 - dot(centre.normal, tap.normal)));
+    float plane_weight = max(0.0, 1.0 - 2.0 * PLANE_SHARPNESS * off_plane);
+    return is_background(tap.depth) ? 0.0 : depth_weight * normal_weight * plane_weight * plane_weight;
+}
+
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    vec4 value = texelFetch(noisy, ivec3(pixel, 0), 0);
+    Surface centre = surface_at(pixel);
+    smoothed = value;
+    if (is_background(centre.depth)) return;
+
+    // Sums of differences to the centre: a constant image comes out bit for bit.
+    vec4 difference = vec4(0.0);
+    float total = gaussian[0];
+    for (int side = -1; side <= 1; side += 2) {
+        float smallest = 1.0;
+        for (int i = 1; i <= BLUR_RADIUS; ++i) {
+            ivec2 position = pixel + side * i * STEP * DIRECTION;
+            ivec2 tap = clamp(position, ivec2(0), image_size - 1);
+            float edge = is_inside(position) ? edge_weight(centre, surface_at(tap)) : 0.0;
+#if MONOTONIC
+            smallest = min(smallest, edge);
+            edge = smallest;
+#endif
+            float weight = gaussian[i] * edge;
+            total += weight;
+            difference += weight * (texelFetch(noisy, ivec3(tap, 0), 0) - value);
+        }
+    }
+    smoothed = value + difference / total;
+}

@@ -1,0 +1,78 @@
+// One bounce of diffuse light from the visible layers; radiosity.h has the formulas.
+//
+// Defines: LAYERS, TEST_TAP_NORMAL (0, 1), NORMALISATION with the names of its values, RADIUS (metres), MIP_OFFSET,
+// FINEST_LEVEL, COARSEST_LEVEL, and those of sample_spiral.glsl.
+
+#include "depth_mip_chain.glsl"
+#include "normal_encoding.glsl"
+#include "sample_spiral.glsl"
+
+layout(binding = 0) uniform sampler2DArray depth;  // with its MIP chain where COARSEST_LEVEL > 0
+layout(binding = 1) uniform sampler2DArray normal;
+layout(binding = 2) uniform sampler2DArray radiance;  // reflected and diffuse, of each layer
+
+layout(location = 0) out vec4 irradiance;  // rgb: E; a: confidence
+
+struct Tap {
+    ivec2 texel;   // of the level
+    ivec2 source;  // the pixel of level 0 that it holds
+    int level;
+};
+
+// The light that a tap sends, before 2 pi / M; in alpha whether it counts as a hit.
+vec4 received(Tap tap, int layer, vec3 centre, vec3 camera_normal) {
+    float tap_depth = texelFetch(depth, ivec3(tap.texel, layer), tap.level).r;
+    vec3 offset = camera_space_point_at(tap.source, min(tap_depth, 1e12)) - centre;
+    float square = dot(offset, offset);
+    vec3 direction = offset * inversesqrt(max(square, 1e-30));
+    float cosine = dot(direction, camera_normal);
+    bool near = square < RADIUS * RADIUS;
+    // The shaded point itself has no direction; rounding would make one up.
+    bool hit = !is_background(tap_depth) && cosine > 0.0 && square > 1e-12 * centre.z * centre.z;
+#if TEST_TAP_NORMAL
+    vec3 tap_normal = decode_normal(texelFetch(normal, ivec3(tap.source, layer), 0).xy);
+    hit = hit && -dot(world_space_direction(direction), tap_normal) > 0.01;
+#else
+    hit = hit && near;
+#endif
+    vec3 light = texelFetch(radiance, ivec3(tap.source, layer), 0).rgb;
+    return hit ? vec4(near ? cosine * light : vec3(0.0), 1.0) : vec4(0.0);
+}
+
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    float centre_depth = texelFetch(depth, ivec3(pixel, 0), 0).r;
+    irradiance = vec4(0.0);
+    if (is_background(centre_depth)) return;
+
+    vec3 camera_normal = camera_space_direction(decode_normal(texelFetch(normal, ivec3(pixel, 0), 0).xy));
+    vec3 centre = camera_space_point_at(pixel, centre_depth);
+    uint jitter = spiral_jitter(pixel);
+    vec2 spin = spiral_spin(pixel, jitter);
+    float tap_spacing = radius_in_pixels(RADIUS, centre_depth) / float(SPIRAL_SAMPLES);
+    float first_tap = float(jitter) / 65536.0;
+
+    vec4 sum = vec4(0.0);
+    for (int i = 0; i < SPIRAL_SAMPLES; ++i) {
+        float distance = (float(i) + first_tap) * tap_spacing;
+        ivec2 position = pixel + ivec2(floor(distance * spiral_direction(i, spin) + 0.5));
+        Tap tap;
+        tap.level = mip_level(distance, MIP_OFFSET, FINEST_LEVEL, COARSEST_LEVEL);
+        tap.texel = texel_at(position, tap.level);
+        tap.source = pixel_of_texel(tap.texel, tap.level);
+        vec4 larger = received(tap, 0, centre, camera_normal);
+#if LAYERS == 2
+        vec4 second = received(tap, 1, centre, camera_normal);
+        bool second_wins = dot(second.rgb, second.rgb) > dot(larger.rgb, larger.rgb);
+        larger = vec4(second_wins ? second.rgb : larger.rgb, max(larger.a, second.a));
+#endif
+        sum += is_inside(position) ? larger : vec4(0.0);
+    }
+
+#if NORMALISATION == HITS
+    float divisor = max(sum.a, 1.0);
+#elif NORMALISATION == SAMPLES
+    float divisor = float(SPIRAL_SAMPLES);
+#endif
+    irradiance = vec4(2.0 * 3.14159265 / divisor * sum.rgb, sum.a / float(SPIRAL_SAMPLES));
+}

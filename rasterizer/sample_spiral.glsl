@@ -1,0 +1,30 @@
+// The GLSL half of sample_spiral.h, which has the formulas and makes the block's contents and the defines.
+
+layout(std140, binding = SPIRAL_BINDING) uniform SpiralBlock {
+    vec4 tap_directions[SPIRAL_MAXIMUM_SAMPLES / 2];
+    vec4 spin_directions[SPIRAL_SPIN_COUNT / 2];
+};
+
+// The rotation (cosine, sine) of all taps of a pixel; `jitter` is in 2^-16.
+vec2 spiral_spin(ivec2 pixel, uint jitter) {
+    uvec2 p = uvec2(pixel);
+    uint turns = ((3u * p.x) ^ (p.y + p.x * p.y)) * SPIRAL_TURNS_PER_HASH + jitter * SPIRAL_TURNS_PER_JITTER;
+    uint index = turns >> (32 - SPIRAL_SPIN_BITS);
+    vec4 pair = spin_directions[index >> 1];
+    return (index & 1u) == 0u ? pair.xy : pair.zw;
+}
+
+// The unit direction of tap i, spun.
+vec2 spiral_direction(int i, vec2 spin) {
+    vec4 pair = tap_directions[i >> 1];
+    vec2 tap = (i & 1) == 0 ? pair.xy : pair.zw;
+    return vec2(tap.x * spin.x - tap.y * spin.y, tap.x * spin.y + tap.y * spin.x);
+}
+
+// 0.1 to 0.9 in 2^-16, from an integer hash of the pixel.
+uint spiral_jitter(ivec2 pixel) {
+    uint h = uint(pixel.x) * 0x9E3779B1u ^ uint(pixel.y) * 0x85EBCA77u;
+    h = (h ^ (h >> 15)) * 0xC2B2AE3Du;
+    h = (h ^ (h >> 13)) * 0x27D4EB2Fu;
+    return 6554u + ((h >> 16) * 52428u >> 16);
+}

@@ -1,0 +1,59 @@
+// The taps of the screen-space passes: N points on a spiral around a pixel, spun by a hash of the pixel.
+//
+// Tap i of N lies at the fraction alpha = (i + jitter) / N of the disc's radius and at alpha tau(N) turns plus the
+// pixel's spin. tau(N) is the number of turns that spreads N taps evenly over the disc; the jitter is one half, or
+// differs from pixel to pixel between 0.1 and 0.9.
+//   Source: McGuire, Mara, Luebke 2012, "Scalable Ambient Obscurance"; tau, hash and jitter: its authors' public code.
+//
+// Every driver must take the very same taps, so nothing here rests on a driver's sine: directions come from tables made
+// on the CPU, and a pixel picks its spin by integer arithmetic, in units of 2^-32 turns that wrap around as the circle
+// does:
+//
+//     spin(x, y)   = 10 ((3 x) xor (y + x y)) radians, as the source
+//     turn of tap  = (i / N) tau  +  quantise(spin + jitter tau / N)
+//
+// quantise rounds down to 1/1024 turn. Pixels count from the bottom left, as OpenGL's do. sample_spiral.glsl is the
+// other half.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include <glm/glm.hpp>
+
+#include "rasterizer/gl_objects.h"
+#include "rasterizer/shader.h"
+
+namespace plumb {
+
+constexpr int maximum_spiral_samples = 1000;
+constexpr int spiral_spin_bits = 10;
+constexpr int spiral_spin_count = 1 << spiral_spin_bits;
+
+// tau(N), for N = 1..maximum_spiral_samples. Throws MethodError that names the range.
+int spiral_turns(int samples);
+
+// The tables that the shader reads, as a uniform block of layout std140; OpenGL guarantees 16384 bytes for one.
+struct SpiralTables {
+    explicit SpiralTables(int samples);
+
+    std::array<glm::vec4, maximum_spiral_samples / 2> tap_directions{};  // (i / N) tau turns; two unit vectors in each
+    std::array<glm::vec4, spiral_spin_count / 2> spin_directions{};      // k / 1024 turns; two unit vectors in each
+};
+static_assert(sizeof(SpiralTables) <= 16384);
+
+// The tables on the GPU.
+class SampleSpiral {
+public:
+    SampleSpiral(GlContext& context, int samples);
+    void bind() const { tables_.bind(GL_UNIFORM_BUFFER, binding); }
+
+    // What sample_spiral.glsl needs to be compiled.
+    static ShaderDefines defines(int samples);
+
+private:
+    static constexpr GLuint binding = 1;  // the view's uniforms have 0
+    GlBuffer tables_;
+};
+
+}  // namespace plumb
