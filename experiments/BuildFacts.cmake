@@ -1,0 +1,32 @@
+# Script behind build_facts.cpp: writes OUTPUT anew where git's description of SOURCE_DIR or a file that decides a
+# reference's pixels has changed since the last build.
+execute_process(COMMAND git describe --always --dirty --tags WORKING_DIRECTORY ${SOURCE_DIR}
+                OUTPUT_VARIABLE describe OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE no_git)
+if(no_git)
+    set(describe "unknown")
+endif()
+
+file(GLOB sources ${SOURCE_DIR}/pathtracer/*.cpp ${SOURCE_DIR}/pathtracer/*.h)
+foreach(name frames/quantities scenes/camera scenes/light scenes/scene scenes/texture)
+    list(APPEND sources ${SOURCE_DIR}/${name}.cpp ${SOURCE_DIR}/${name}.h)
+endforeach()
+list(SORT sources)
+set(hashes "")
+foreach(file ${sources})
+    file(SHA256 ${file} hash)
+    string(APPEND hashes ${hash})
+endforeach()
+string(SHA256 integrator "${hashes}")
+string(SUBSTRING ${integrator} 0 16 integrator)
+
+file(CONFIGURE OUTPUT ${OUTPUT} CONTENT [[#include "experiments/build_facts.h"
+
+namespace plumb {
+
+const BuildFacts& build_facts() {
+    static constexpr BuildFacts facts{"@VERSION@", "@describe@", "@COMPILER@", "@BUILD_TYPE@", "@integrator@"};
+    return facts;
+}
+
+}  // namespace plumb
+]] @ONLY)

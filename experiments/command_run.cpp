@@ -1,0 +1,95 @@
+// `plumbline run`: a whole experiment.
+#include <cstdlib>
+#include <memory>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "experiments/backend_option.h"
+#include "experiments/command.h"
+#include "experiments/exit_code.h"
+#include "experiments/experiment_file.h"
+#include "experiments/interruption.h"
+#include "experiments/runner.h"
+#include "experiments/summary.h"
+
+namespace plumb {
+namespace {
+
+constexpr const char* examples = R"(Examples:
+  plumbline run experiments/one_vs_two_layers.toml
+  plumbline run experiments/one_vs_two_layers.toml --quick          a look at it within a minute
+  plumbline run mine.toml --output out/mine --scenes-dir ~/scenes
+Exits with 1 where cells failed (they are listed), with 130 where it was interrupted.)";
+
+struct Options {
+    std::filesystem::path experiment;
+    RunOptions run;
+    bool quick = false, no_frames = false;
+};
+
+// $XDG_CACHE_HOME/plumbline, or ~/.cache/plumbline, or a folder here where there is no home.
+std::filesystem::path default_cache() {
+    if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache && *cache)
+        return std::filesystem::path(cache) / "plumbline";
+    if (const char* home = std::getenv("HOME"); home && *home)
+        return std::filesystem::path(home) / ".cache" / "plumbline";
+    return "cache";
+}
+
+int run(const Options& options, const CommonOptions& common) {
+    Experiment experiment = load_experiment(options.experiment);
+    if (options.quick) make_quick(experiment);
+    RunOptions run_options = options.run;
+    if (run_options.output.empty()) run_options.output = std::filesystem::path("out") / experiment.name;
+    run_options.write_frames = !options.no_frames;
+    run_options.stop = &interruption_flag();
+    run_options.command =
+        fmt::format("plumbline run {}{}", options.experiment.string(), options.quick ? " --quick" : "");
+
+    fmt::print("{}\n", experiment.title);
+    if (!experiment.question.empty()) fmt::print("{}\n", experiment.question);
+    const RunResults results = run_experiment(experiment, SceneFinder(common.scenes_dir), run_options);
+
+    fmt::print("\n{}\n", print_results_table(results.rows));
+    for (const std::string& sentence : results.summary) fmt::print("* {}\n", sentence);
+    int cached = 0;
+    for (const ReferenceUse& use : results.references) cached += use.from_cache ? 1 : 0;
+    fmt::print("\n{} truths ({} of them from the cache), {} on {}, {:.0f} s\n", results.references.size(), cached,
+               results.gl_renderer, results.system.cpu, results.seconds);
+    if (!results.failures.empty()) {
+        fmt::print("\n{} cell{} failed:\n", results.failures.size(), results.failures.size() == 1 ? "" : "s");
+        for (const CellFailure& failure : results.failures) fmt::print("  {}: {}\n", failure.cell, failure.message);
+    }
+    fmt::print("\nTable   {}\nNumbers {}\nPage    {}\n", (run_options.output / "results.csv").string(),
+               (run_options.output / "results.json").string(), (run_options.output / "index.html").string());
+    if (results.interrupted) {
+        fmt::print("\nInterrupted: the same command goes on where this one stopped.\n");
+        return exit_interrupted;
+    }
+    return results.failures.empty() ? exit_fine : exit_failed;
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& app, const CommonOptions& common, Action& action) {
+    CLI::App* command = app.add_subcommand("run", "Run an experiment: table, files and page")->group("Measure");
+    auto options = std::make_shared<Options>();
+    options->run.cache_dir = default_cache();
+    command->add_option("experiment", options->experiment, "Experiment file (TOML)")->required()->type_name("FILE");
+    command->add_option("-o,--output", options->run.output, "Results folder; out/NAME by default");
+    command->add_option("--cache-dir", options->run.cache_dir, "Folder of kept references")
+        ->capture_default_str()
+        ->envname("PLUMBLINE_CACHE");
+    command->add_flag("--quick", options->quick,
+                      "Try it: a quarter of the resolution, one view per scene, few samples");
+    command->add_flag("--no-frames", options->no_frames, "Do not write EXR files");
+    command->add_option("--threads", options->run.threads, "Threads of the path tracer; 0: all")
+        ->check(CLI::NonNegativeNumber);
+    add_backend_option(*command, options->run.backend);
+    command->footer(examples);
+    command->callback([options, &common, &action] { action = [options, &common] { return run(*options, common); }; });
+}
+
+}  // namespace plumb

@@ -1,0 +1,107 @@
+// `plumbline scenes`: what there is to see.
+#include <exception>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "experiments/command.h"
+#include "experiments/exit_code.h"
+#include "experiments/scene_finder.h"
+#include "experiments/terminal_table.h"
+
+namespace plumb {
+namespace {
+
+std::vector<std::string> light_list(const Scene& scene) {
+    std::vector<std::string> lights;
+    const auto add = [&](std::size_t count, const char* kind) {
+        if (count > 0) lights.push_back(fmt::format("{} {}", count, kind));
+    };
+    add(scene.point_lights.size(), "point");
+    add(scene.spot_lights.size(), "spot");
+    add(scene.directional_lights.size(), "directional");
+    std::size_t emissive = 0;
+    for (const Instance& instance : scene.instances) {
+        const Mesh& mesh = scene.meshes[static_cast<std::size_t>(instance.mesh)];
+        if (scene.materials[static_cast<std::size_t>(mesh.material)].is_emissive()) emissive += mesh.triangles.size();
+    }
+    add(emissive, "emissive triangles");
+    if (!scene.environment.is_black()) lights.emplace_back(scene.environment.texture < 0 ? "constant sky" : "sky map");
+    return lights;
+}
+
+std::string names_of(const auto& elements) {
+    std::vector<std::string> names;
+    for (const auto& element : elements) names.push_back(element.name);
+    return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
+}
+
+int list_scenes(const SceneFinder& finder) {
+    using Align = TerminalTable::Align;
+    TerminalTable table({{"scene"}, {"from"}, {"triangles", Align::right}, {"lights"}, {"views"}, {"paths"}});
+    std::vector<std::string> problems;
+    for (const FoundScene& found : finder.list()) {
+        try {
+            const Scene scene = finder.load(found.file.empty() ? found.name : found.file.string());
+            const auto lights = light_list(scene);
+            table.add_row({found.name, found.file.empty() ? "built in" : found.file.string(),
+                           fmt::format("{}", scene.triangle_count()),
+                           lights.empty() ? "none" : fmt::format("{}", fmt::join(lights, ", ")),
+                           names_of(scene.cameras), names_of(scene.paths)});
+        } catch (const std::exception& error) {
+            problems.push_back(fmt::format("{}: {}", found.name, error.what()));
+        }
+    }
+    fmt::print("{}", table.print());
+    for (const std::string& problem : problems) fmt::print("\ncannot be loaded: {}\n", problem);
+    return problems.empty() ? exit_fine : exit_wrong_use;
+}
+
+int show_scene(const SceneFinder& finder, const std::string& name) {
+    const Scene scene = finder.load(name);
+    const Bounds bounds = scene.bounds();
+    const auto lights = light_list(scene);
+    fmt::print("{}\n{}\n\n", scene.name, scene.description);
+    fmt::print("triangles   {} in {} instances of {} meshes\n", scene.triangle_count(), scene.instances.size(),
+               scene.meshes.size());
+    fmt::print("materials   {}, {} textures\n", scene.materials.size(), scene.textures.size());
+    if (!bounds.empty()) {
+        fmt::print("bounds      ({:.3g}, {:.3g}, {:.3g}) to ({:.3g}, {:.3g}, {:.3g}) m\n", bounds.lower.x,
+                   bounds.lower.y, bounds.lower.z, bounds.upper.x, bounds.upper.y, bounds.upper.z);
+    }
+    fmt::print("lights      {}\n", lights.empty() ? "none" : fmt::format("{}", fmt::join(lights, ", ")));
+    fmt::print("hash        {:016x}\n\nviews\n", scene.content_hash());
+    for (const Camera& camera : scene.cameras) {
+        const glm::vec3 eye = camera.position();
+        fmt::print("  {:<14} at ({:.3g}, {:.3g}, {:.3g}), {:.1f} degrees high, {:.3g} to {:.3g} m\n", camera.name,
+                   eye.x, eye.y, eye.z, glm::degrees(camera.vertical_fov), camera.near_plane, camera.far_plane);
+    }
+    fmt::print("paths\n");
+    for (const CameraPath& path : scene.paths) {
+        fmt::print("  {:<14} {} keys, {:.3g} s\n", path.name, path.keys.size(), path.duration());
+    }
+    if (!scene.import_notes.empty()) fmt::print("on the way in\n");
+    for (const std::string& note : scene.import_notes) fmt::print("  {}\n", note);
+    return exit_fine;
+}
+
+}  // namespace
+
+void add_scenes_command(CLI::App& app, const CommonOptions& common, Action& action) {
+    CLI::App* command = app.add_subcommand("scenes", "List scenes, or show one in detail")->group("Look around");
+    auto name = std::make_shared<std::string>();
+    command->add_option("name", *name, "Scene to show: built in, of the scenes folder, or a file")->type_name("SCENE");
+    command->footer("Examples:\n  plumbline scenes\n  plumbline scenes cornell\n  plumbline scenes models/hall.gltf");
+    command->callback([name, &common, &action] {
+        action = [name, &common] {
+            const SceneFinder finder(common.scenes_dir);
+            return name->empty() ? list_scenes(finder) : show_scene(finder, *name);
+        };
+    });
+}
+
+}  // namespace plumb

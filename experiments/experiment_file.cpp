@@ -1,0 +1,176 @@
+#include "experiments/experiment_file.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "frames/image_error.h"
+
+namespace plumb {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+// Planes that both sides can deliver and that have a difference worth measuring. Positions in the list mean nothing.
+const std::vector<std::string> comparable_planes = {
+    "ao",       "direct",       "indirect",      "indirect.1",    "indirect.2", "indirect.3",
+    "emission", "total",        "irradiance",    "depth",         "normal",     "albedo",
+    "motion",   "layer2.depth", "layer2.normal", "layer2.albedo", "reflection"};
+
+Quantities read_quantities(ConfigReader& reader) {
+    Quantities quantities;
+    quantities.bounces = reader.integer("bounces", quantities.bounces, 1, 64);
+    try {
+        quantities.ao_falloff =
+            falloff_from_string(reader.text("ao_falloff", std::string(to_string(quantities.ao_falloff))));
+    } catch (const ImageError& error) {
+        reader.fail("ao_falloff", error.what());
+    }
+    return quantities;
+}
+
+ExperimentScene read_scene(ConfigReader& reader, const ExperimentScene& defaults) {
+    ExperimentScene scene = defaults;
+    scene.scene = reader.required_text("scene");
+    scene.views = reader.texts("views", {});
+    scene.ao_radius = static_cast<float>(reader.number("ao_radius", defaults.ao_radius, 1e-6, infinity));
+    scene.indirect_radius =
+        static_cast<float>(reader.number("indirect_radius", defaults.indirect_radius, 1e-6, infinity));
+    scene.minimum_separation =
+        static_cast<float>(reader.number("minimum_separation", defaults.minimum_separation, 0.0, 1e6));
+    if (const ConfigValue* overrides = reader.value("method")) {
+        scene.method_overrides = *overrides;
+        // Applied to a default method, so that misspelt parameters are found before anything renders.
+        Method probe;
+        override_method(probe, *overrides, reader.source());
+    }
+    reader.finish();
+    return scene;
+}
+
+MethodList read_methods(ConfigReader& reader) {
+    const ConfigValue* tables = reader.value("methods");
+    if (!tables) reader.fail("", "'methods' is missing: name at least one method");
+    const auto* array = std::get_if<ConfigArray>(&tables->value);
+    if (!array || array->empty()) reader.fail("methods", "must be an array with at least one method");
+
+    MethodList known = builtin_methods(), methods;
+    for (const ConfigValue& entry : *array) {
+        Method method;
+        if (const auto* name = std::get_if<std::string>(&entry.value)) {
+            const Method* found = find_method(known, *name);
+            if (!found) {
+                std::vector<std::string> names;
+                for (const Method& candidate : known) names.push_back(candidate.name);
+                reader.fail("methods", fmt::format("no method '{}'; {}", *name, name_hint(*name, names)));
+            }
+            method = *found;
+        } else {
+            method = parse_method(entry, reader.source(), known);
+            known.push_back(method);
+        }
+        if (find_method(methods, method.name))
+            reader.fail("methods", fmt::format("two methods are called '{}'", method.name));
+        methods.push_back(std::move(method));
+    }
+    return methods;
+}
+
+}  // namespace
+
+Experiment parse_experiment(const ConfigValue& table, const std::filesystem::path& file) {
+    ConfigReader reader(table, file.string());
+    Experiment experiment;
+    experiment.file = file;
+    experiment.name = reader.text("name", file.stem().string());
+    experiment.title = reader.text("title", experiment.name);
+    experiment.question = reader.text("question", "");
+
+    experiment.planes = reader.texts("planes", experiment.planes);
+    if (experiment.planes.empty()) reader.fail("planes", "must name at least one plane");
+    for (const std::string& plane : experiment.planes) {
+        if (std::ranges::find(comparable_planes, plane) == comparable_planes.end()) {
+            reader.fail("planes", fmt::format("unknown plane '{}'; {}", plane, name_hint(plane, comparable_planes)));
+        }
+    }
+    const std::vector<int> size = reader.integers("resolution", {experiment.width, experiment.height}, 8, 16384);
+    if (size.size() != 2) reader.fail("resolution", "must be [width, height]");
+    experiment.width = size[0], experiment.height = size[1];
+
+    ConfigReader quantities = reader.table("quantities");
+    experiment.quantities = read_quantities(quantities);
+    ExperimentScene defaults;
+    defaults.ao_radius = static_cast<float>(quantities.number("ao_radius", defaults.ao_radius, 1e-6, infinity));
+    defaults.indirect_radius =
+        static_cast<float>(quantities.number("indirect_radius", defaults.indirect_radius, 1e-6, infinity));
+    defaults.minimum_separation =
+        static_cast<float>(quantities.number("minimum_separation", defaults.minimum_separation, 0.0, 1e6));
+    quantities.finish();
+
+    ConfigReader reference = reader.table("reference");
+    experiment.reference.samples = reference.integer("samples", experiment.reference.samples, 2, 1 << 24);
+    if (experiment.reference.samples % 2 != 0) {
+        reference.fail("samples", "must be even, because the reference keeps two halves");
+    }
+    experiment.reference.target_error = reference.number("target_error", experiment.reference.target_error, 0.0, 1.0);
+    experiment.reference.seed = static_cast<std::uint64_t>(
+        reference.integer("seed", static_cast<int>(experiment.reference.seed), 0, std::numeric_limits<int>::max()));
+    experiment.reference.most_noise = reference.number("most_noise", experiment.reference.most_noise, 1e-6, 1e6);
+    reference.finish();
+
+    ConfigReader timing = reader.table("timing");
+    experiment.timing.warm_up = timing.integer("warm_up", experiment.timing.warm_up, 0, 1000);
+    experiment.timing.repetitions = timing.integer("repetitions", experiment.timing.repetitions, 1, 100000);
+    timing.finish();
+
+    experiment.path_tracer_samples = reader.integers("path_tracer_samples", experiment.path_tracer_samples, 2, 1 << 20);
+    for (const int samples : experiment.path_tracer_samples) {
+        if (samples % 2 != 0)
+            reader.fail("path_tracer_samples", fmt::format("holds {}, but must hold even numbers", samples));
+    }
+
+    for (ConfigReader& scene : reader.tables("scenes")) experiment.scenes.push_back(read_scene(scene, defaults));
+    if (experiment.scenes.empty()) reader.fail("", "'scenes' is missing: write at least one [[scenes]] table");
+    std::set<std::string> names;
+    for (const ExperimentScene& scene : experiment.scenes) {
+        if (!names.insert(scene.scene).second) reader.fail("scenes", fmt::format("'{}' is there twice", scene.scene));
+    }
+    experiment.methods = read_methods(reader);
+    experiment.baseline = reader.text("baseline", experiment.methods.front().name);
+    if (!find_method(experiment.methods, experiment.baseline)) {
+        std::vector<std::string> methods;
+        for (const Method& method : experiment.methods) methods.push_back(method.name);
+        reader.fail("baseline",
+                    fmt::format("no method '{}'; {}", experiment.baseline, name_hint(experiment.baseline, methods)));
+    }
+    reader.finish();
+    return experiment;
+}
+
+Experiment load_experiment(const std::filesystem::path& file) { return parse_experiment(read_config(file), file); }
+
+void make_quick(Experiment& experiment) {
+    experiment.width = std::max(8, experiment.width / 4);
+    experiment.height = std::max(8, experiment.height / 4);
+    experiment.reference.samples = std::min(experiment.reference.samples, 64);
+    experiment.reference.target_error = 0.0;
+    experiment.timing.repetitions = std::min(experiment.timing.repetitions, 3);
+    std::erase_if(experiment.path_tracer_samples, [](int samples) { return samples > 4; });
+    for (ExperimentScene& scene : experiment.scenes) {
+        if (scene.views.size() > 1) scene.views.resize(1);
+    }
+    experiment.quick = true;
+}
+
+Method method_in_scene(const Method& method, const ExperimentScene& scene, const std::string& source) {
+    Method result = method;
+    if (result.gbuffer.layers > 1) result.gbuffer.minimum_separation = scene.minimum_separation;
+    if (result.radiosity.enabled) result.radiosity.radius = scene.indirect_radius;
+    override_method(result, scene.method_overrides, source);
+    return result;
+}
+
+}  // namespace plumb

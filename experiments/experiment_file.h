@@ -1,0 +1,65 @@
+// An experiment: a question asked as scenes x views x methods, with the quantities that are compared, the truth that
+// they are compared with, and how often things are timed. Written in TOML (experiments/one_vs_two_layers.toml is an
+// example).
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "experiments/method_file.h"
+#include "frames/quantities.h"
+
+namespace plumb {
+
+struct ExperimentScene {
+    std::string scene;                // a built-in scene's name or a scene file
+    std::vector<std::string> views;   // camera names; empty: all
+    float ao_radius = 1.0f;           // metres
+    float indirect_radius = 1.0f;     // metres; what methods gather from, and the limit of the limited truth
+    float minimum_separation = 0.1f;  // metres between the layers
+    ConfigValue method_overrides{ConfigMembers{}, 0};  // parameters that suit the scene, for all methods
+};
+
+struct ExperimentReference {
+    int samples = 256;          // per pixel, the most
+    double target_error = 0.0;  // stop early below this relative error; 0: never
+    std::uint64_t seed = 1;
+    // A difference counts as measured only where the mean squared noise of the reference is below this share of it.
+    double most_noise = 0.1;
+};
+
+struct ExperimentTiming {
+    int warm_up = 1;      // frames rendered before the clock runs
+    int repetitions = 7;  // frames timed per method, interleaved
+};
+
+struct Experiment {
+    std::string name;
+    std::string title;
+    std::string question;
+    std::filesystem::path file;
+    std::vector<std::string> planes = {"ao", "indirect", "total"};
+    int width = 480, height = 270;
+    Quantities quantities;  // defaults for all scenes; `planes` empty
+    ExperimentReference reference;
+    ExperimentTiming timing;
+    std::vector<int> path_tracer_samples = {4, 16};  // the path tracer's own points in the chart; empty: none
+    std::vector<ExperimentScene> scenes;
+    MethodList methods;
+    bool quick = false;    // only the first view of each scene
+    std::string baseline;  // the method that others are set against in the summary; the first by default
+};
+
+// Throws ConfigError with file and line.
+Experiment parse_experiment(const ConfigValue& table, const std::filesystem::path& file);
+Experiment load_experiment(const std::filesystem::path& file);
+
+// The same question at a small size, for trying it out: a quarter of the resolution, few samples, one view per scene.
+void make_quick(Experiment& experiment);
+
+// The method as it runs in `scene`: with its separation, its radius and its overrides.
+Method method_in_scene(const Method& method, const ExperimentScene& scene, const std::string& source);
+
+}  // namespace plumb

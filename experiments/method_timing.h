@@ -1,0 +1,15 @@
+// How long methods take, measured side by side.
+#pragma once
+
+#include <vector>
+
+#include "experiments/results.h"
+
+namespace plumb {
+
+// Times each pipeline's passes over `view`: all warm up, then take turns (A B A B ...), so that a machine that slows
+// down slows all of them. One Timing per pipeline.
+std::vector<Timing> time_interleaved(const std::vector<Pipeline*>& pipelines, const View& view,
+                                     const ExperimentTiming& settings);
+
+}  // namespace plumb

@@ -1,0 +1,29 @@
+// How far a long job is: one line that rewrites itself on a terminal, a plain log line every few seconds elsewhere.
+#pragma once
+
+#include <chrono>
+#include <string>
+
+namespace plumb {
+
+class ProgressLine {
+public:
+    // Writes to standard error, so that standard output holds results only.
+    ProgressLine();
+    ~ProgressLine();
+    ProgressLine(const ProgressLine&) = delete;
+    ProgressLine& operator=(const ProgressLine&) = delete;
+
+    // `fraction` in 0..1. Shows at most ten times a second on a terminal, every five seconds elsewhere.
+    void show(double fraction, const std::string& text);
+    // Takes the line away on a terminal.
+    void clear();
+    // Clears the line and prints `text` as a line that stays.
+    void log(const std::string& text);
+
+private:
+    bool terminal_ = false, shown_ = false;
+    std::chrono::steady_clock::time_point last_;
+};
+
+}  // namespace plumb

@@ -1,0 +1,20 @@
+// A run's results as files for other programs.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "experiments/results.h"
+
+namespace plumb {
+
+// One line per row; all measures as columns; quoted as RFC 4180 says.
+std::string print_csv(const RunResults& results);
+// Everything: rows with parameters, measures and the time of each pass, the experiment, versions, machine, references,
+// failures. Numbers that are not finite are null.
+std::string print_json(const RunResults& results);
+
+// Writes results.csv, results.json and index.html (page.h) into `folder`, each whole or not at all.
+void write_result_files(const RunResults& results, const std::filesystem::path& folder);
+
+}  // namespace plumb

@@ -1,0 +1,64 @@
+#include "experiments/runner.h"
+
+#include <chrono>
+#include <ctime>
+#include <exception>
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include "experiments/pictures.h"
+#include "experiments/result_files.h"
+#include "experiments/scene_run.h"
+#include "experiments/summary.h"
+
+namespace plumb {
+namespace {
+
+void describe_context(const GlInfo& info, RunResults& results) {
+    results.gl_backend = fmt::format("{} ({})", to_string(info.backend), info.platform);
+    results.gl_vendor = info.vendor, results.gl_renderer = info.renderer, results.gl_version = info.version;
+    results.gl_software = info.software;
+}
+
+}  // namespace
+
+RunResults run_experiment(const Experiment& experiment, const SceneFinder& finder, const RunOptions& options) {
+    const auto start = std::chrono::steady_clock::now();
+    RunResults results;
+    results.experiment = experiment;
+    results.system = read_system_facts();
+    results.command = options.command;
+    results.started = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
+
+    const std::unique_ptr<GlContext> context = GlContext::create(options.backend);
+    describe_context(context->info(), results);
+    const ReferenceCache cache(options.cache_dir);
+    ProgressLine progress;
+    const auto stopped = [&] { return options.stop && options.stop->load(); };
+
+    const double part = 1.0 / static_cast<double>(experiment.scenes.size());
+    for (std::size_t i = 0; i < experiment.scenes.size() && !stopped(); ++i) {
+        const ExperimentScene& entry = experiment.scenes[i];
+        try {
+            const Scene scene = finder.load(entry.scene);
+            results.scene_hashes[entry.scene] = fmt::format("{:016x}", scene.content_hash());
+            const double from = part * static_cast<double>(i);
+            SceneRun run(experiment, entry, scene,
+                         {*context, cache, progress, options.stop, options.threads, from, from + part});
+            run.run(results);
+            write_pictures(run, experiment, entry.scene, options.output, results);
+            if (options.write_frames) write_frames(run, experiment, entry.scene, options.output);
+        } catch (const std::exception& error) {
+            results.failures.push_back({entry.scene, error.what()});
+        }
+    }
+    progress.clear();
+    results.interrupted = stopped();
+    results.summary = summarise(results);
+    results.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    write_result_files(results, options.output);
+    return results;
+}
+
+}  // namespace plumb

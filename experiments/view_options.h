@@ -1,0 +1,34 @@
+// Options that `render` and `reference` share: which view of which scene, how large, and which quantities.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "experiments/command.h"
+#include "frames/frame.h"
+#include "frames/quantities.h"
+#include "scenes/camera.h"
+#include "scenes/scene.h"
+
+namespace plumb {
+
+struct ViewOptions {
+    std::string scene, view;
+    std::vector<int> size = {960, 540};
+    std::vector<std::string> planes;
+    Quantities quantities;
+    std::string ao_falloff = "quadratic";
+    std::filesystem::path output = "out";
+
+    void add_to(CLI::App& command, const std::vector<std::string>& default_planes);
+    Quantities read_quantities() const;
+    View make_view(const Scene& loaded) const;
+};
+
+// Writes OUTPUT/SCENE.VIEW.NAME.exr and one PNG per plane (no half-buffers or variances), and prints their paths.
+// Radiance is exposed so that its 99th percentile is nearly white.
+void write_frame_files(const Frame& frame, const ViewOptions& options, const std::string& view,
+                       const std::string& name);
+
+}  // namespace plumb
