@@ -129,12 +129,12 @@ void append_cloth(Mesh& mesh, float centre, float depth, float width, float bott
         const float wave = glm::two_pi<float>() * static_cast<float>(folds) * u + phase;
         const float amplitude = 0.05f + 0.07f * (1.0f - v);
         const float waist = 1.0f - gather * std::exp(-18.0f * (v - 0.42f) * (v - 0.42f));
-        const float x = (u - 0.5f) * width * waist + 0.02f * std::sin(2.0f * wave);
+        const float x = (u - 0.5f) * width * waist + 0.008f * std::sin(2.0f * wave);
         const float sag = 0.04f * std::sin(glm::pi<float>() * static_cast<float>(folds) * u);
         return glm::vec3(centre + x, glm::mix(bottom, top, v) - (1.0f - v) * sag,
                          depth + amplitude * std::sin(wave + 0.6f * std::sin(0.5f * wave)));
     };
-    append_surface(mesh, 12 * folds, 20, position, {width, 0.25f * (top - bottom)});
+    append_surface(mesh, 16 * folds, 20, position, {width, 0.25f * (top - bottom)});
 }
 
 void add_materials(Scene& scene) {
@@ -403,7 +403,7 @@ void add_views(Scene& scene) {
     };
     view("court", {-12.6f, 2.2f, 0.9f}, {2.0f, 3.2f, -0.4f}, 60.0f);
     view("aisle", {-11.2f, 1.7f, 5.9f}, {2.0f, 1.9f, 4.9f}, 60.0f);
-    view("gallery", {-5.8f, 7.1f, -5.8f}, {-1.0f, 5.6f, 3.5f}, 65.0f);
+    view("gallery", {-6.0f, 7.1f, -6.1f}, {-4.4f, 5.9f, 3.5f}, 65.0f);
     view("curtain", {-2.2f, 1.7f, 0.4f}, {-5.4f, 2.0f, 4.3f}, 55.0f);
     CameraPath strafe{"strafe", glm::radians(60.0f), near_plane, far_plane, {}};
     strafe.keys = {{0.0f, {-11.0f, 1.9f, -1.2f}, {-9.5f, 2.2f, 4.5f}},

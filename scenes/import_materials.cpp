@@ -1,0 +1,270 @@
+#include "scenes/import_materials.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <span>
+#include <tuple>
+
+#include <assimp/GltfMaterial.h>
+#include <assimp/material.h>
+#include <assimp/scene.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "scenes/gltf_extras.h"
+#include "scenes/scene_error.h"
+#include "scenes/texture_file.h"
+
+namespace plumb {
+namespace {
+
+std::string lower_case(std::string text) {
+    std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return text;
+}
+
+std::string percent_decoded(const std::string& text) {
+    std::string decoded;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const bool code = text[i] == '%' && i + 2 < text.size() &&
+                          std::isxdigit(static_cast<unsigned char>(text[i + 1])) &&
+                          std::isxdigit(static_cast<unsigned char>(text[i + 2]));
+        decoded += code ? static_cast<char>(std::stoi(text.substr(i + 1, 2), nullptr, 16)) : text[i];
+        if (code) i += 2;
+    }
+    return decoded;
+}
+
+// `wanted` beside `folder`: as written, percent-decoded, or with other letter case (files that were written on
+// Windows).
+std::optional<std::filesystem::path> find_texture(const std::filesystem::path& folder, std::string wanted) {
+    std::ranges::replace(wanted, '\\', '/');
+    for (const std::string& name : {wanted, percent_decoded(wanted)}) {
+        if (std::filesystem::is_regular_file(folder / name)) return folder / name;
+    }
+    std::filesystem::path place = folder;
+    for (const std::filesystem::path& part : std::filesystem::path(wanted)) {
+        std::error_code error;
+        std::filesystem::path match = place / part;
+        if (!std::filesystem::exists(match, error)) {
+            for (const auto& entry : std::filesystem::directory_iterator(place, error)) {
+                if (lower_case(entry.path().filename()) == lower_case(part)) match = entry.path();
+            }
+        }
+        place = match;
+    }
+    if (std::filesystem::is_regular_file(place)) return place;
+    return std::nullopt;
+}
+
+TextureWrap wrap_of(int mode) {
+    switch (mode) {
+        case aiTextureMapMode_Clamp:
+        case aiTextureMapMode_Decal:
+            return TextureWrap::clamp;
+        case aiTextureMapMode_Mirror:
+            return TextureWrap::mirror;
+        default:
+            return TextureWrap::repeat;
+    }
+}
+
+bool has_holes(const Texture& texture, float cutoff) {
+    for (std::size_t i = 3; i < texture.texels.size(); i += 4) {
+        if (texture.texels[i] < cutoff) return true;
+    }
+    return false;
+}
+
+class MaterialImporter {
+public:
+    MaterialImporter(const aiScene& source, const std::filesystem::path& file, const GltfExtras* extras,
+                     const ImportOptions& options, Scene& scene)
+        : source_(source), file_(file), extras_(extras), options_(options), scene_(scene) {}
+
+    std::vector<bool> run() {
+        std::vector<std::string> see_through;
+        for (unsigned i = 0; i < source_.mNumMaterials; ++i) {
+            const aiMaterial& from = *source_.mMaterials[i];
+            Material material;
+            material.name = from.GetName().C_Str();
+            const bool left_out = extras_ ? read_gltf(from, i, material) : read_classic(from, material);
+            if (left_out) see_through.push_back(material.name);
+            left_out_.push_back(left_out);
+            limit_colour(material);
+            scene_.materials.push_back(std::move(material));
+        }
+        if (!see_through.empty()) {
+            note("see-through materials left out (there is no refraction): {}", fmt::join(see_through, ", "));
+        }
+        drop_by_name();
+        return left_out_;
+    }
+
+private:
+    template <typename... Arguments>
+    void note(fmt::format_string<Arguments...> text, Arguments&&... arguments) {
+        scene_.import_notes.push_back(
+            fmt::format("{}: {}", file_.filename().string(), fmt::format(text, std::forward<Arguments>(arguments)...)));
+    }
+
+    void drop_by_name() {
+        for (const std::string& name : options_.drop_materials) {
+            bool found = false;
+            for (std::size_t i = 0; i < left_out_.size(); ++i) {
+                if (scene_.materials[i].name == name) left_out_[i] = found = true;
+            }
+            if (found) continue;
+            std::vector<std::string> names;
+            for (const Material& material : scene_.materials) names.push_back(material.name);
+            throw SceneError(fmt::format("'{}' has no material '{}' to drop; it has: {}", file_.string(), name,
+                                         fmt::join(names, ", ")));
+        }
+    }
+
+    void limit_colour(Material& material) {
+        const glm::vec3 limited = glm::clamp(material.base_colour, 0.0f, 1.0f);
+        if (limited == material.base_colour) return;
+        note("material '{}': base colour ({}, {}, {}) limited to 0..1", material.name, material.base_colour.x,
+             material.base_colour.y, material.base_colour.z);
+        material.base_colour = limited;
+    }
+
+    // Index of the texture in slot (`type`, 0), loaded once; no_texture where the slot is empty.
+    int texture(const aiMaterial& from, aiTextureType type, TextureContent content, const std::string& material) {
+        aiString path;
+        aiTextureMapMode modes[3] = {aiTextureMapMode_Wrap, aiTextureMapMode_Wrap, aiTextureMapMode_Wrap};
+        unsigned uv_set = 0;
+        if (from.GetTexture(type, 0, &path, nullptr, &uv_set, nullptr, nullptr, modes) != aiReturn_SUCCESS)
+            return no_texture;
+        if (uv_set != 0)
+            note("material '{}': texture '{}' uses UV set {}; set 0 is used", material, path.C_Str(), uv_set);
+        const TextureWrap wrap_u = wrap_of(modes[0]), wrap_v = wrap_of(modes[1]);
+        const auto key = std::tuple(std::string(path.C_Str()), content, wrap_u, wrap_v);
+        if (const auto known = textures_.find(key); known != textures_.end()) return known->second;
+        Texture loaded = read_texture(path.C_Str(), content, material);
+        loaded.wrap_u = wrap_u;
+        loaded.wrap_v = wrap_v;
+        scene_.textures.push_back(std::move(loaded));
+        return textures_[key] = static_cast<int>(scene_.textures.size()) - 1;
+    }
+
+    Texture read_texture(const std::string& path, TextureContent content, const std::string& material) {
+        try {
+            if (const aiTexture* embedded = source_.GetEmbeddedTexture(path.c_str()))
+                return decode(*embedded, path, content);
+            const auto file = find_texture(file_.parent_path(), path);
+            if (file) return load_texture(*file, content);
+            note(
+                "material '{}': texture '{}' not found beside the file; a magenta checker stands in. Put the image "
+                "there or "
+                "correct the path",
+                material, path);
+        } catch (const SceneError& error) {
+            note("material '{}': {}; a magenta checker stands in", material, error.what());
+        }
+        return missing_texture(path);
+    }
+
+    static Texture decode(const aiTexture& embedded, const std::string& path, TextureContent content) {
+        if (embedded.mHeight != 0) throw SceneError(fmt::format("embedded texture '{}' holds raw texels", path));
+        const std::string name = fmt::format("embedded{}.{}", path, embedded.achFormatHint);
+        return decode_texture(std::as_bytes(std::span(reinterpret_cast<const char*>(embedded.pcData), embedded.mWidth)),
+                              name, content);
+    }
+
+    static glm::vec3 colour(const aiMaterial& from, const char* key, unsigned type, unsigned index,
+                            const glm::vec3& otherwise) {
+        aiColor3D value;
+        return from.Get(key, type, index, value) == aiReturn_SUCCESS ? glm::vec3(value.r, value.g, value.b) : otherwise;
+    }
+    static float number(const aiMaterial& from, const char* key, unsigned type, unsigned index, float otherwise) {
+        float value = otherwise;
+        from.Get(key, type, index, value);
+        return value;
+    }
+
+    // True where the material is to be left out.
+    bool read_gltf(const aiMaterial& from, unsigned index, Material& material) {
+        material.base_colour = colour(from, AI_MATKEY_BASE_COLOR, glm::vec3(1.0f));
+        material.base_colour_texture = texture(from, aiTextureType_BASE_COLOR, TextureContent::colour, material.name);
+        material.metallic = number(from, AI_MATKEY_METALLIC_FACTOR, 1.0f);
+        material.roughness = number(from, AI_MATKEY_ROUGHNESS_FACTOR, 1.0f);
+        material.metallic_roughness_texture =
+            texture(from, aiTextureType_METALNESS, TextureContent::data, material.name);
+        const float strength = index < extras_->emissive_strengths.size() ? extras_->emissive_strengths[index] : 1.0f;
+        material.emission = strength * colour(from, AI_MATKEY_COLOR_EMISSIVE, glm::vec3(0.0f));
+        material.emission_texture = texture(from, aiTextureType_EMISSIVE, TextureContent::colour, material.name);
+        bool double_sided = false;
+        from.Get(AI_MATKEY_TWOSIDED, double_sided);
+        material.two_sided = double_sided;
+
+        aiString mode("OPAQUE");
+        from.Get(AI_MATKEY_GLTF_ALPHAMODE, mode);
+        if (mode == aiString("OPAQUE")) return false;
+        aiColor4D factor(1.0f, 1.0f, 1.0f, 1.0f);
+        from.Get(AI_MATKEY_BASE_COLOR, factor);
+        const bool mask = mode == aiString("MASK");
+        const float cutoff = mask ? number(from, AI_MATKEY_GLTF_ALPHACUTOFF, 0.5f) : 0.5f;
+        if (factor.a < cutoff) return true;
+        if (material.base_colour_texture != no_texture) {
+            material.alpha_mask = true;
+            material.alpha_cutoff = cutoff / factor.a;
+        }
+        if (!mask) {
+            note("material '{}': alphaMode BLEND taken as {}", material.name,
+                 material.alpha_mask ? "a mask at alpha 0.5" : "opaque");
+        }
+        return false;
+    }
+
+    bool read_classic(const aiMaterial& from, Material& material) {
+        material.base_colour = colour(from, AI_MATKEY_COLOR_DIFFUSE, glm::vec3(0.6f));
+        material.base_colour_texture = texture(from, aiTextureType_DIFFUSE, TextureContent::colour, material.name);
+        if (options_.ignore_diffuse_colour_under_texture && material.base_colour_texture != no_texture) {
+            material.base_colour = glm::vec3(1.0f);
+        }
+        const glm::vec3 specular = colour(from, AI_MATKEY_COLOR_SPECULAR, glm::vec3(0.0f));
+        const float exponent = number(from, AI_MATKEY_SHININESS, 0.0f);
+        const bool shiny = std::max({specular.x, specular.y, specular.z}) > 0.0f && exponent > 0.0f;
+        if (shiny) {
+            // Phong exponent to GGX alpha: alpha = sqrt(2 / (n + 2)) (Walter et al. 2007); roughness = sqrt(alpha).
+            material.roughness = std::pow(2.0f / (exponent + 2.0f), 0.25f);
+        }
+        if (material.base_colour == glm::vec3(0.0f) && std::max({specular.x, specular.y, specular.z}) > 0.1f) {
+            material.base_colour = specular;
+            material.metallic = 1.0f;
+        }
+        material.emission = colour(from, AI_MATKEY_COLOR_EMISSIVE, glm::vec3(0.0f));
+        material.emission_texture = texture(from, aiTextureType_EMISSIVE, TextureContent::colour, material.name);
+        if (material.emission_texture != no_texture && !material.is_emissive()) material.emission = glm::vec3(1.0f);
+
+        material.alpha_texture = texture(from, aiTextureType_OPACITY, TextureContent::data, material.name);
+        if (material.alpha_texture != no_texture) {
+            const Texture& mask = scene_.textures[material.alpha_texture];
+            material.alpha_mask = true;
+            material.alpha_channel = has_holes(mask, 1.0f) ? 3 : 0;  // a mask image is grey, or carries it in its alpha
+        }
+        return number(from, AI_MATKEY_OPACITY, 1.0f) < 0.5f;
+    }
+
+    const aiScene& source_;
+    const std::filesystem::path& file_;
+    const GltfExtras* extras_;
+    const ImportOptions& options_;
+    Scene& scene_;
+    std::vector<bool> left_out_;
+    std::map<std::tuple<std::string, TextureContent, TextureWrap, TextureWrap>, int> textures_;
+};
+
+}  // namespace
+
+std::vector<bool> import_materials(const aiScene& source, const std::filesystem::path& file, const GltfExtras* extras,
+                                   const ImportOptions& options, Scene& scene) {
+    return MaterialImporter(source, file, extras, options, scene).run();
+}
+
+}  // namespace plumb

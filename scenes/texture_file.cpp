@@ -1,0 +1,122 @@
+#include "scenes/texture_file.h"
+
+#include <array>
+#include <cmath>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+
+#include "scenes/scene_error.h"
+
+namespace plumb {
+namespace {
+
+using OIIO::ImageInput;
+using OIIO::TypeDesc;
+
+// The values of 8-bit codes in both contents, computed once per call: 256 powers are nothing beside a picture.
+std::array<half, 256> code_values(TextureContent content) {
+    std::array<half, 256> values;
+    for (int i = 0; i < 256; ++i) {
+        const float encoded = static_cast<float>(i) / 255.0f;
+        values[i] = half(content == TextureContent::colour ? linear_from_srgb(encoded) : encoded);
+    }
+    return values;
+}
+
+// Largest finite half; radiance above it (the sun's disc in some skies) is cut there.
+constexpr float largest_half = 65504.0f;
+
+Texture read(ImageInput& input, const std::string& name, TextureContent content) {
+    const OIIO::ImageSpec& spec = input.spec();
+    const int channels = spec.nchannels;
+    Texture texture;
+    texture.name = name;
+    texture.width = spec.width;
+    texture.height = spec.height;
+    const std::size_t pixels = static_cast<std::size_t>(spec.width) * spec.height;
+    texture.texels.resize(4 * pixels);
+
+    // Where each of R, G, B, A comes from; -1: alpha is 1.
+    const int last = channels - 1;
+    const std::array<int, 4> from = channels == 1   ? std::array{0, 0, 0, -1}
+                                    : channels == 2 ? std::array{0, 0, 0, 1}
+                                                    : std::array{0, 1, 2, std::min(last, 3) == 3 ? 3 : -1};
+    const auto fill = [&](const auto& source, auto&& convert) {
+        for (std::size_t i = 0; i < pixels; ++i) {
+            for (int c = 0; c < 4; ++c) {
+                texture.texels[4 * i + c] = from[c] < 0 ? half(1.0f) : convert(source[i * channels + from[c]], c == 3);
+            }
+        }
+    };
+    const auto read_into = [&](auto& values, TypeDesc type) {
+        values.resize(pixels * channels);
+        if (!input.read_image(0, 0, 0, channels, type, values.data())) {
+            throw SceneError(fmt::format("texture '{}' cannot be read: {}", name, input.geterror()));
+        }
+    };
+    if (spec.format == TypeDesc::UINT8) {
+        std::vector<unsigned char> values;
+        read_into(values, TypeDesc::UINT8);
+        const std::array<half, 256> colour = code_values(content), data = code_values(TextureContent::data);
+        fill(values, [&](unsigned char code, bool alpha) { return alpha ? data[code] : colour[code]; });
+    } else {
+        std::vector<float> values;
+        read_into(values, TypeDesc::FLOAT);
+        const bool encoded = content == TextureContent::colour && !spec.format.is_floating_point();
+        fill(values, [&](float value, bool alpha) {
+            if (encoded && !alpha) value = linear_from_srgb(value);
+            return half(std::isfinite(value) ? glm::clamp(value, -largest_half, largest_half) : 0.0f);
+        });
+    }
+    return texture;
+}
+
+// Alpha is a mask here, never a coverage that colours were multiplied with.
+OIIO::ImageSpec reading_settings() {
+    OIIO::ImageSpec settings;
+    settings.attribute("oiio:UnassociatedAlpha", 1);
+    return settings;
+}
+
+}  // namespace
+
+float linear_from_srgb(float encoded) {
+    return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
+}
+
+Texture load_texture(const std::filesystem::path& file, TextureContent content) {
+    const OIIO::ImageSpec settings = reading_settings();
+    const std::unique_ptr<ImageInput> input = ImageInput::open(file.string(), &settings);
+    if (!input) {
+        throw SceneError(fmt::format("texture '{}' cannot be opened: {}", file.string(), OIIO::geterror()));
+    }
+    return read(*input, file.string(), content);
+}
+
+Texture decode_texture(std::span<const std::byte> bytes, const std::string& name, TextureContent content) {
+    OIIO::Filesystem::IOMemReader memory(const_cast<std::byte*>(bytes.data()), bytes.size());
+    const OIIO::ImageSpec settings = reading_settings();
+    const std::unique_ptr<ImageInput> input = ImageInput::open(name, &settings, &memory);
+    if (!input) throw SceneError(fmt::format("embedded texture '{}' cannot be decoded: {}", name, OIIO::geterror()));
+    return read(*input, name, content);
+}
+
+Texture missing_texture(const std::string& name) {
+    Texture texture;
+    texture.name = name + " (missing)";
+    texture.width = texture.height = 16;
+    for (int j = 0; j < 16; ++j) {
+        for (int i = 0; i < 16; ++i) {
+            const float value = (i / 2 + j / 2) % 2 == 0 ? 1.0f : 0.0f;
+            for (const float channel : {value, 0.0f, value, 1.0f}) texture.texels.push_back(half(channel));
+        }
+    }
+    return texture;
+}
+
+}  // namespace plumb
