@@ -103,6 +103,7 @@ std::vector<std::string> channel_names(std::string_view plane, int channels) {
             break;
     }
     std::vector<std::string> names;
+    names.reserve(static_cast<std::size_t>(channels));
     for (int i = 0; i < channels; ++i) {
         names.push_back(letters.empty() ? fmt::format("{}.{}", plane, i) : fmt::format("{}.{}", plane, letters[i]));
     }

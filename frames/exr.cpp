@@ -177,6 +177,7 @@ private:
 
         const auto names = full_names(index, part, header);
         std::vector<std::string> list;
+        list.reserve(names.size());
         for (const auto& [full, name] : names) list.push_back(full);
         const auto groups = group_channels(list);
         Imf::FrameBuffer buffer;
@@ -260,7 +261,7 @@ private:
             }
             const std::string name = channel.name();
             const bool has_layer = name.find('.') != std::string::npos;
-            names.emplace(index == 0 || has_layer ? name : part + "." + name, name);
+            names.emplace(index == 0 || has_layer ? name : fmt::format("{}.{}", part, name), name);
         }
         return names;
     }

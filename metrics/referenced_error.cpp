@@ -98,7 +98,8 @@ ReferencedError referenced_error(const Image& test, const Image& half_a, const I
     for (int y = 0; y < test.height(); ++y) {
         for (int x = 0; x < test.width(); ++x) {
             if (!pixel_counts(settings.mask, x, y)) continue;
-            Block& block = blocks[static_cast<std::size_t>(y / result.block_size * columns + x / result.block_size)];
+            Block& block = blocks[static_cast<std::size_t>(y / result.block_size) * static_cast<std::size_t>(columns) +
+                                  static_cast<std::size_t>(x / result.block_size)];
             for (int c = 0; c < test.channels(); ++c) {
                 const double i = test.at(x, y, c), a = half_a.at(x, y, c), b = half_b.at(x, y, c);
                 if (!std::isfinite(i) || !std::isfinite(a) || !std::isfinite(b)) {

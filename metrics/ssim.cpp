@@ -19,6 +19,7 @@ namespace plumb {
 namespace {
 
 constexpr int radius = ssim_window / 2;
+constexpr std::size_t margins = 2 * radius;
 using Kernel = std::array<double, ssim_window>;
 
 Kernel gaussian() {
@@ -61,7 +62,7 @@ class RowFilter {
 public:
     RowFilter(int width, double data_range)
         : width_(width), c1_(0.01 * data_range * 0.01 * data_range), c2_(0.03 * data_range * 0.03 * data_range) {
-        for (auto& row : columns_) row.resize(static_cast<std::size_t>(width) + 2 * radius);
+        for (auto& row : columns_) row.resize(static_cast<std::size_t>(width) + margins);
         for (auto& row : moments_) row.resize(static_cast<std::size_t>(width));
     }
 
@@ -81,16 +82,15 @@ private:
     // E[v], E[r], E[v^2], E[r^2], E[vr] down each column, with mirrored margins left and right.
     void filter_columns(const Channel& test, const Channel& reference, int y) {
         for (auto& row : columns_) std::ranges::fill(row, 0.0);
-        double* const v1 = columns_[0].data() + radius;
-        double* const r1 = columns_[1].data() + radius;
-        double* const v2 = columns_[2].data() + radius;
-        double* const r2 = columns_[3].data() + radius;
-        double* const vr = columns_[4].data() + radius;
+        double* __restrict v1 = columns_[0].data() + radius;
+        double* __restrict r1 = columns_[1].data() + radius;
+        double* __restrict v2 = columns_[2].data() + radius;
+        double* __restrict r2 = columns_[3].data() + radius;
+        double* __restrict vr = columns_[4].data() + radius;
         for (int k = 0; k < ssim_window; ++k) {
-            const float* const test_row = test.row(y + k - radius);
-            const float* const reference_row = reference.row(y + k - radius);
+            const float* __restrict test_row = test.row(y + k - radius);
+            const float* __restrict reference_row = reference.row(y + k - radius);
             const double weight = kernel_[k];
-#pragma GCC ivdep
             for (int x = 0; x < width_; ++x) {
                 const double v = test_row[x], r = reference_row[x];
                 v1[x] += weight * v;
@@ -109,9 +109,8 @@ private:
     }
 
     void filter_row(const std::vector<double>& in, std::vector<double>& out) const {
-        const double* const source = in.data();
-        double* const target = out.data();
-#pragma GCC ivdep
+        const double* __restrict source = in.data();
+        double* __restrict target = out.data();
         for (int x = 0; x < width_; ++x) {
             double sum = 0;
             for (int k = 0; k < ssim_window; ++k) sum += kernel_[k] * source[x + k];

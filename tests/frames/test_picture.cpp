@@ -3,6 +3,10 @@
 #include <limits>
 #include <numeric>
 
+#ifdef __SANITIZE_ADDRESS__
+#include <sanitizer/lsan_interface.h>
+#endif
+
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imagebufalgo.h>
 #include <gmock/gmock.h>
@@ -105,7 +109,13 @@ TEST(ReadFrame, NamesFileAndRemedyForWhatIsNoImage) {
     EXPECT_THAT(read_message(folder / "none.png"), AllOf(HasSubstr("none.png"), HasSubstr("no such file")));
     EXPECT_THAT(read_message(folder / "empty.png"), AllOf(HasSubstr("empty.png"), HasSubstr("0 bytes")));
     EXPECT_THAT(read_message(folder / "text.png"), AllOf(HasSubstr("text.png"), HasSubstr("give an image file")));
-    EXPECT_THAT(read_message(folder / "part.png"), HasSubstr("part.png"));
+    {
+#ifdef __SANITIZE_ADDRESS__
+        // libpng leaves OpenImageIO's reader by longjmp, past the destructor of a string of its own.
+        const __lsan::ScopedDisabler leak_of_the_library;
+#endif
+        EXPECT_THAT(read_message(folder / "part.png"), HasSubstr("part.png"));
+    }
     EXPECT_THAT(read_message(folder.path()), HasSubstr("not a file"));
 }
 

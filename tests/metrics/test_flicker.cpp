@@ -1,0 +1,119 @@
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include <gmock/gmock.h>
+
+#include "frames/image_error.h"
+#include "metrics/flicker.h"
+
+namespace plumb {
+namespace {
+
+constexpr int width = 16, height = 8;
+constexpr double float32 = 1e-6;  // values of about 1, stored in single precision
+
+// A wall 2 m away that faces the camera; one pixel is 0.01 m wide. Panning moves the camera right, the wall left:
+// surface point s (in pixels of the wall) is seen in pixel s - camera.
+Frame wall(double camera, const std::function<double(double)>& value) {
+    Frame frame(width, height);
+    Image &plane = frame.set("direct", Image(width, height, 1)),
+          &position = frame.set("position", Image(width, height, 3));
+    frame.set("depth", Image(width, height, 1, 2.0f));
+    frame.set("motion", Image(width, height, 2));
+    for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < width; ++x) {
+            plane.at(x, y) = static_cast<float>(value(x + camera));
+            position.at(x, y, 0) = static_cast<float>(0.01 * (x + camera));
+            position.at(x, y, 1) = static_cast<float>(-0.01 * y);
+            position.at(x, y, 2) = -2.0f;
+        }
+    }
+    return frame;
+}
+
+Frame with_motion(Frame frame, double x) {
+    for (int j = 0; j < height; ++j) {
+        for (int i = 0; i < width; ++i) frame.plane("motion").at(i, j, 0) = static_cast<float>(x);
+    }
+    return frame;
+}
+
+double texture(double s) { return 0.5 + 0.03 * s; }
+
+TEST(Flicker, OfAnErrorThatStaysIsZeroAndOfOneThatChangesSignIsTwiceTheError) {
+    const Frame truth = wall(0, texture);
+    const Frame brighter = wall(0, [](double s) { return texture(s) + 0.25; });
+    const Frame darker = wall(0, [](double s) { return texture(s) - 0.25; });
+    EXPECT_NEAR(flicker(brighter, truth, brighter, truth, "direct").rms, 0.0, float32);
+    const Flicker changing = flicker(brighter, truth, darker, truth, "direct");
+    EXPECT_NEAR(changing.rms, 0.5, float32);
+    EXPECT_NEAR(changing.method_warping, 0.5, float32);
+    EXPECT_NEAR(changing.truth_warping, 0.0, float32);
+    EXPECT_EQ(changing.pixels, static_cast<std::size_t>(width * height));
+}
+
+TEST(Flicker, WhatTheTruthItselfDoesCancels) {
+    const auto bright = [](double s) { return 2 * texture(s); };
+    const Flicker result = flicker(wall(0, texture), wall(0, texture), wall(0, bright), wall(0, bright), "direct");
+    EXPECT_NEAR(result.rms, 0.0, float32);
+    EXPECT_GT(result.truth_warping, 0.4);
+    EXPECT_DOUBLE_EQ(result.truth_warping, result.method_warping);
+}
+
+TEST(Flicker, FollowsSurfacePointsThroughMotionByWholeAndByFractionsOfPixels) {
+    for (const double pan : {3.0, -2.0, 1.5, 0.25}) {
+        const auto wrong = [](double s) { return texture(s) + 0.1 * s; };  // an error that sticks to the wall
+        const Flicker result =
+            flicker(wall(0, wrong), wall(0, texture), wall(pan, wrong), with_motion(wall(pan, texture), pan), "direct");
+        EXPECT_NEAR(result.rms, 0.0, 2 * float32) << "pan by " << pan << ": bilinear look-ups are exact on ramps";
+        const auto outside = static_cast<std::size_t>(std::ceil(std::abs(pan))) * height;
+        EXPECT_EQ(result.not_visible, outside) << "pan by " << pan;
+        EXPECT_EQ(result.pixels, width * height - outside) << "pan by " << pan;
+    }
+}
+
+TEST(Flicker, OfAnErrorThatSticksToTheScreenIsItsSlopeTimesTheMotion) {
+    const double pan = 3;
+    const auto before = [](double s) { return texture(s) + 0.1 * s; };
+    const auto now = [&](double s) { return texture(s) + 0.1 * (s - pan); };
+    const Flicker result =
+        flicker(wall(0, before), wall(0, texture), wall(pan, now), with_motion(wall(pan, texture), pan), "direct");
+    EXPECT_NEAR(result.rms, 0.3, float32);
+}
+
+TEST(Flicker, LeavesOutPointsThatWereHiddenBefore) {
+    Frame truth_before = wall(0, texture);
+    for (int y = 0; y < height; ++y) truth_before.plane("position").at(5, y, 2) = -1.0f;  // a post stood there
+    const Frame truth = wall(0, texture);
+    const Flicker result = flicker(truth, truth_before, truth, truth, "direct");
+    EXPECT_EQ(result.not_visible, static_cast<std::size_t>(height));
+}
+
+TEST(Flicker, CountsBackgroundAsNotVisibleAndValuesThatAreNotFinite) {
+    Frame truth = wall(0, texture), method = wall(0, texture);
+    truth.plane("depth").at(0, 0) = std::numeric_limits<float>::infinity();
+    truth.plane("motion").at(1, 0, 0) = std::numeric_limits<float>::infinity();
+    truth.plane("motion").at(2, 0, 0) = std::numeric_limits<float>::quiet_NaN();
+    method.plane("direct").at(4, 4) = std::numeric_limits<float>::quiet_NaN();
+    const Flicker result = flicker(wall(0, texture), wall(0, texture), method, truth, "direct");
+    EXPECT_EQ(result.not_visible, 3u);
+    EXPECT_EQ(result.non_finite, 1u);
+    EXPECT_NEAR(result.rms, 0.0, float32);
+}
+
+TEST(Flicker, NamesThePlaneThatIsMissingAndSaysNothingWhereNothingIsVisible) {
+    const Frame truth = wall(0, texture);
+    Frame bare(width, height);
+    bare.set("direct", Image(width, height, 1));
+    try {
+        flicker(truth, truth, truth, bare, "direct");
+        FAIL() << "no ImageError";
+    } catch (const ImageError& error) {
+        EXPECT_THAT(error.what(), testing::HasSubstr("motion"));
+    }
+    EXPECT_TRUE(std::isnan(flicker(truth, truth, truth, with_motion(wall(0, texture), 100), "direct").rms));
+}
+
+}  // namespace
+}  // namespace plumb
