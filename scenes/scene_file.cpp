@@ -1,0 +1,291 @@
+#include "scenes/scene_file.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "embedded/wrappers.h"
+#include "scenes/builtin.h"
+#include "scenes/import.h"
+#include "scenes/scene_error.h"
+#include "scenes/texture_file.h"
+#include "scenes/toml_reader.h"
+#include "scenes/validate.h"
+
+namespace plumb {
+namespace {
+
+constexpr std::array wrapper_names = {"bathroom",       "bunny",         "conference",          "cornell-original",
+                                      "cornell-sphere", "crytek-sponza", "crytek-sponza-lamps", "dabrovic-sponza",
+                                      "dragon",         "dragon-full",   "flight-helmet",       "nvpro-cornell",
+                                      "veach-ajar"};
+
+using Folders = std::vector<std::filesystem::path>;
+
+std::filesystem::path find_file(const std::string& wanted, const std::string& wanted_by, const Folders& folders) {
+    if (std::filesystem::path(wanted).is_absolute() && std::filesystem::is_regular_file(wanted)) return wanted;
+    std::vector<std::string> looked_in;
+    for (const std::filesystem::path& folder : folders) {
+        if (std::filesystem::is_regular_file(folder / wanted)) return folder / wanted;
+        looked_in.push_back(fmt::format("'{}'", folder.empty() ? "." : folder.string()));
+    }
+    throw SceneError(
+        fmt::format("scene '{}': '{}' not found (looked in {}). Name the folder that holds it with --scenes-dir "
+                    "or PLUMBLINE_SCENES",
+                    wanted_by, wanted, fmt::join(looked_in, ", ")));
+}
+
+ImportOptions read_import_options(TomlReader reader) {
+    ImportOptions options;
+    reader.read("scale", options.scale);
+    std::string normals = "file";
+    reader.read("normals", normals);
+    if (normals == "face") {
+        options.normals = NormalSource::face;
+    } else if (normals == "smooth") {
+        options.normals = NormalSource::smooth;
+    } else if (normals != "file") {
+        reader.complain("normals", fmt::format("has normals = '{}'; it must be 'file', 'face' or 'smooth'", normals));
+    }
+    float crease = glm::degrees(options.crease_angle);
+    if (reader.read("crease_angle", crease)) options.crease_angle = glm::radians(crease);
+    reader.read("drop_materials", options.drop_materials);
+    reader.read("flip_winding", options.flip_winding);
+    reader.read("ignore_diffuse_colour_under_texture", options.ignore_diffuse_colour_under_texture);
+    reader.finish();
+    return options;
+}
+
+void read_materials(TomlReader reader, Scene& scene) {
+    for (const std::string& name : reader.names()) {
+        TomlReader entry = reader.table(name);
+        bool found = false;
+        for (Material& material : scene.materials) {
+            if (material.name != name) continue;
+            found = true;
+            entry.read("base_colour", material.base_colour);
+            entry.read("metallic", material.metallic);
+            entry.read("roughness", material.roughness);
+            entry.read("emission", material.emission);
+            entry.read("two_sided", material.two_sided);
+        }
+        if (!found) {
+            std::vector<std::string> names;
+            for (const Material& material : scene.materials) names.push_back(material.name);
+            reader.complain(name, fmt::format("names a material '{}' that the mesh file does not have; it has: {}",
+                                              name, fmt::join(names, ", ")));
+        }
+        entry.finish();
+    }
+}
+
+void read_environment(TomlReader reader, Scene& scene, const std::string& wanted_by, const Folders& folders) {
+    std::string image;
+    if (reader.read("image", image)) {
+        Texture texture = load_texture(find_file(image, wanted_by, folders), TextureContent::colour);
+        texture.wrap_u = TextureWrap::repeat;
+        texture.wrap_v = TextureWrap::clamp;
+        scene.environment.texture = static_cast<int>(scene.textures.size());
+        scene.environment.radiance = glm::vec3(1.0f);
+        scene.textures.push_back(std::move(texture));
+    }
+    reader.read("radiance", scene.environment.radiance);
+    float rotation = 0.0f;
+    if (reader.read("rotation", rotation)) scene.environment.rotation = glm::radians(rotation);
+    reader.finish();
+}
+
+glm::vec3 read_direction(TomlReader& reader, const char* key, const glm::vec3& otherwise) {
+    glm::vec3 direction = otherwise;
+    reader.read(key, direction);
+    if (!(glm::length(direction) > 1e-6f)) reader.complain(key, fmt::format("has a '{}' of zero length", key));
+    return glm::normalize(direction);
+}
+
+void read_lights(TomlReader& reader, Scene& scene) {
+    for (TomlReader& entry : reader.tables("point_lights")) {
+        PointLight light;
+        entry.read("name", light.name);
+        entry.require("position", light.position);
+        entry.require("intensity", light.intensity);
+        entry.finish();
+        scene.point_lights.push_back(light);
+    }
+    for (TomlReader& entry : reader.tables("spot_lights")) {
+        SpotLight light;
+        entry.read("name", light.name);
+        entry.require("position", light.position);
+        entry.require("intensity", light.intensity);
+        glm::vec3 target;
+        if (entry.read("target", target)) {
+            if (entry.has("direction")) entry.complain("direction", "has both a direction and a target; give one");
+            if (target == light.position) entry.complain("target", "has its target where it stands; move one of them");
+            light.direction = glm::normalize(target - light.position);
+        } else {
+            light.direction = read_direction(entry, "direction", light.direction);
+        }
+        float inner = glm::degrees(light.inner_angle), outer = glm::degrees(light.outer_angle);
+        entry.read("inner_angle", inner);
+        entry.read("outer_angle", outer);
+        light.inner_angle = glm::radians(inner);
+        light.outer_angle = glm::radians(outer);
+        entry.finish();
+        scene.spot_lights.push_back(light);
+    }
+    for (TomlReader& entry : reader.tables("directional_lights")) {
+        DirectionalLight light;
+        entry.read("name", light.name);
+        light.direction = read_direction(entry, "direction", light.direction);
+        entry.require("irradiance", light.irradiance);
+        entry.finish();
+        scene.directional_lights.push_back(light);
+    }
+}
+
+template <typename Named>
+void add_or_replace(std::vector<Named>& items, Named item) {
+    std::erase_if(items, [&](const Named& other) { return other.name == item.name; });
+    items.push_back(std::move(item));
+}
+
+void read_view(TomlReader& entry, Scene& scene) {
+    std::string name;
+    glm::vec3 eye, target, up(0.0f, 1.0f, 0.0f);
+    float fov = 50.0f;
+    entry.require("name", name);
+    entry.require("eye", eye);
+    entry.require("target", target);
+    entry.read("up", up);
+    entry.read("vertical_fov", fov);
+    Camera camera = Camera::look_at(name, eye, target, glm::radians(fov), up);
+    entry.read("near", camera.near_plane);
+    entry.read("far", camera.far_plane);
+    entry.finish();
+    (void)View(camera, 1, 1);  // complains about planes and angles now rather than when it is used
+    add_or_replace(scene.cameras, std::move(camera));
+}
+
+void read_path(TomlReader& entry, Scene& scene) {
+    CameraPath path;
+    float fov = glm::degrees(path.vertical_fov);
+    entry.require("name", path.name);
+    entry.read("vertical_fov", fov);
+    entry.read("near", path.near_plane);
+    entry.read("far", path.far_plane);
+    path.vertical_fov = glm::radians(fov);
+    for (TomlReader& key : entry.tables("keys")) {
+        CameraKey camera_key;
+        key.require("time", camera_key.time);
+        key.require("eye", camera_key.eye);
+        key.require("target", camera_key.target);
+        key.finish();
+        path.keys.push_back(camera_key);
+    }
+    entry.finish();
+    (void)View(path.at(0.0f), 1, 1);  // complains about keys, planes and angles now
+    add_or_replace(scene.paths, std::move(path));
+}
+
+// Makes a scene usable that says nothing of views or lights.
+void complete(Scene& scene) {
+    if (scene.cameras.empty()) {
+        const Bounds bounds = scene.bounds();
+        const float size = bounds.diagonal();
+        const glm::vec3 eye = bounds.centre() + size * glm::vec3(0.45f, 0.35f, 0.85f);
+        Camera camera = Camera::look_at("overview", eye, bounds.centre(), glm::radians(50.0f));
+        camera.near_plane = 0.05f * size;
+        camera.far_plane = 3.0f * size;
+        scene.cameras.push_back(camera);
+        scene.import_notes.push_back("no view given: 'overview' looks at the whole from outside");
+    }
+    const bool dark = scene.point_lights.empty() && scene.spot_lights.empty() && scene.directional_lights.empty() &&
+                      scene.environment.is_black() && !scene.has_emissive_surfaces();
+    if (dark) {
+        scene.environment.radiance = glm::vec3(1.0f);
+        scene.import_notes.push_back("no light given: a constant environment of radiance 1 lights it");
+    }
+}
+
+std::string read_text(const std::filesystem::path& file) {
+    std::ifstream input(file, std::ios::binary);
+    if (!input) throw SceneError(fmt::format("scene file '{}' cannot be read; check its permissions", file.string()));
+    return {std::istreambuf_iterator<char>(input), {}};
+}
+
+Scene load_file(const std::filesystem::path& file, const Folders& scenes_dirs) {
+    if (file.extension() == ".toml") return load_scene_text(read_text(file), file, scenes_dirs);
+    Scene scene = import_scene_file(file);
+    complete(scene);
+    return scene;
+}
+
+}  // namespace
+
+std::vector<std::string> wrapper_scene_names() { return {wrapper_names.begin(), wrapper_names.end()}; }
+
+std::vector<std::filesystem::path> scenes_dirs_of_environment() {
+    std::vector<std::filesystem::path> folders;
+    const char* value = std::getenv("PLUMBLINE_SCENES");
+    std::istringstream list(value ? value : "");
+    for (std::string folder; std::getline(list, folder, ':');) {
+        if (!folder.empty()) folders.emplace_back(folder);
+    }
+    return folders;
+}
+
+Scene load_scene_text(std::string_view text, const std::filesystem::path& file, const Folders& scenes_dirs) {
+    const toml::table table = parse_toml(text, file.string());
+    TomlReader reader(table, file.string(), "the scene file");
+    Folders folders = {file.parent_path()};
+    folders.insert(folders.end(), scenes_dirs.begin(), scenes_dirs.end());
+
+    const ImportOptions options = read_import_options(reader.table("import"));
+    std::string mesh, builtin;
+    const bool has_mesh = reader.read("mesh", mesh), has_builtin = reader.read("builtin", builtin);
+    if (has_mesh == has_builtin) reader.complain("mesh", "needs either mesh = \"FILE\" or builtin = \"NAME\"");
+    Scene scene =
+        has_mesh ? import_scene_file(find_file(mesh, file.string(), folders), options) : make_builtin_scene(builtin);
+    scene.name = file.stem().string();
+    reader.read("name", scene.name);
+    reader.read("description", scene.description);
+    read_materials(reader.table("materials"), scene);
+    read_environment(reader.table("environment"), scene, file.string(), folders);
+    read_lights(reader, scene);
+    for (TomlReader& entry : reader.tables("views")) read_view(entry, scene);
+    for (TomlReader& entry : reader.tables("paths")) read_path(entry, scene);
+    reader.finish();
+    complete(scene);
+    validate(scene);
+    return scene;
+}
+
+Scene load_scene(const std::string& name_or_path, const Folders& scenes_dirs) {
+    const std::vector<std::string> builtins = builtin_scene_names();
+    if (std::ranges::find(builtins, name_or_path) != builtins.end()) {
+        return make_builtin_scene(name_or_path);
+    }
+    if (std::ranges::find(wrapper_names, name_or_path) != wrapper_names.end()) {
+        const std::string file = name_or_path + ".toml";
+        return load_scene_text(embedded::wrappers::find(file), file, scenes_dirs);
+    }
+    if (std::filesystem::is_regular_file(name_or_path)) return load_file(name_or_path, scenes_dirs);
+    for (const std::filesystem::path& folder : scenes_dirs) {
+        if (std::filesystem::is_regular_file(folder / name_or_path))
+            return load_file(folder / name_or_path, scenes_dirs);
+    }
+    std::vector<std::string> names = builtins;
+    names.insert(names.end(), wrapper_names.begin(), wrapper_names.end());
+    const std::string nearest = nearest_word(name_or_path, names);
+    throw SceneError(fmt::format("no scene '{}'{}. Give a file (.toml, .gltf, .obj, .ply...) or one of: {}",
+                                 name_or_path, nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest),
+                                 fmt::join(names, ", ")));
+}
+
+}  // namespace plumb
