@@ -48,7 +48,7 @@ struct AmbientObscuranceSettings {
     float intensity = 1.0f;
     bool use_mip_chain = true;  // reads coarser depth for far taps: constant cost over radius
     int mip_offset = 3;         // a tap r' pixels away reads level floor(log2 r') - mip_offset
-    BilateralBlurSettings blur;
+    BilateralBlurSettings blur = {};
 };
 
 // What the sum over the taps is divided by: the taps that hit (as the paper), or all of them.
