@@ -19,7 +19,7 @@ namespace plumb {
 namespace {
 
 constexpr int radius = ssim_window / 2;
-constexpr std::size_t margins = 2 * radius;
+constexpr std::size_t margins = ssim_window - 1;  // left and right together
 using Kernel = std::array<double, ssim_window>;
 
 Kernel gaussian() {
