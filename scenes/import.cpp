@@ -122,7 +122,9 @@ private:
         Mesh mesh;
         mesh.name = from.mName.C_Str();
         mesh.material = static_cast<int>(from.mMaterialIndex);
-        if (!left_out_[from.mMaterialIndex]) {
+        if (left_out_[from.mMaterialIndex]) {
+            left_out_triangles_ += from.mNumFaces;
+        } else {
             for (unsigned i = 0; i < from.mNumVertices; ++i) {
                 mesh.positions.push_back(options_.scale * to_glm(from.mVertices[i]));
                 if (from.HasNormals() && options_.normals == NormalSource::file) {
@@ -301,6 +303,9 @@ private:
 
         std::string changes = counts_.summary();
         if (lines_and_points_ > 0) changes += fmt::format(", {} lines and points dropped", lines_and_points_);
+        if (left_out_triangles_ > 0) {
+            changes += fmt::format(", {} triangles of materials left out", left_out_triangles_);
+        }
         if (mirrored_ > 0) changes += fmt::format(", {} mirrored instances written out", mirrored_);
         scene_.import_notes.insert(
             scene_.import_notes.begin(),
@@ -325,7 +330,7 @@ private:
     std::vector<bool> left_out_;
     std::map<std::string, glm::mat4> world_of_node_;
     RepairCounts counts_;
-    std::size_t lines_and_points_ = 0, triangles_and_polygons_ = 0, mirrored_ = 0;
+    std::size_t lines_and_points_ = 0, triangles_and_polygons_ = 0, mirrored_ = 0, left_out_triangles_ = 0;
     bool has_vertex_colours_ = false;
 };
 

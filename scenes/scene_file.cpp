@@ -14,6 +14,7 @@
 #include "embedded/wrappers.h"
 #include "scenes/builtin.h"
 #include "scenes/import.h"
+#include "scenes/mesh_maker.h"
 #include "scenes/scene_error.h"
 #include "scenes/texture_file.h"
 #include "scenes/toml_reader.h"
@@ -84,6 +85,24 @@ void read_materials(TomlReader reader, Scene& scene) {
         }
         entry.finish();
     }
+}
+
+void add_ground(TomlReader reader, Scene& scene) {
+    Material material;
+    material.name = "ground";
+    material.base_colour = glm::vec3(0.5f);
+    float height = 0.0f, size = 10.0f;
+    glm::vec3 centre(0.0f);
+    reader.read("height", height);
+    reader.read("centre", centre);
+    reader.read("size", size);
+    reader.read("base_colour", material.base_colour);
+    if (!(size > 0.0f)) reader.complain("size", "needs a positive size");
+    reader.finish();
+    Mesh mesh = make_mesh("ground", static_cast<int>(scene.materials.size()));
+    append_quad(mesh, {centre.x - 0.5f * size, height, centre.z + 0.5f * size}, {size, 0, 0}, {0, 0, -size});
+    scene.materials.push_back(material);
+    add_object(scene, std::move(mesh));
 }
 
 void read_environment(TomlReader reader, Scene& scene, const std::string& wanted_by, const Folders& folders) {
@@ -256,6 +275,7 @@ Scene load_scene_text(std::string_view text, const std::filesystem::path& file, 
     reader.read("name", scene.name);
     reader.read("description", scene.description);
     read_materials(reader.table("materials"), scene);
+    if (reader.has("ground")) add_ground(reader.table("ground"), scene);
     read_environment(reader.table("environment"), scene, file.string(), folders);
     read_lights(reader, scene);
     for (TomlReader& entry : reader.tables("views")) read_view(entry, scene);

@@ -15,6 +15,8 @@
 //     ignore_diffuse_colour_under_texture = false
 //     [materials."brick"]                   # overrides; the name must exist
 //     base_colour = [0.7, 0.6, 0.5]         # also: metallic, roughness, emission, two_sided
+//     [ground]                              # a level two-sided square under an object that has none; all keys optional
+//     height = 0.0                          # also: centre = [x, any, z], size (metres, its side), base_colour
 //     [environment]
 //     radiance = [0.5, 0.6, 0.9]            # multiplies the image
 //     image = "environment/sky.hdr"         # equirectangular; found as the mesh is

@@ -1,0 +1,45 @@
+// Which effects a scene calls for, and why: both renderers obey this plan, and `--explain` prints it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scenes/scene.h"
+
+namespace plumb {
+
+enum class EffectKind {
+    emissive_surfaces,
+    point_lights,
+    spot_lights,
+    directional_lights,
+    environment,
+    environment_image,
+    glossy_surfaces,  // metallic > 0 or roughness < 1
+    alpha_masks,
+    textures,
+    one_sided_surfaces,
+    refraction,      // materials have no such property
+    moving_objects,  // instances stand still; only cameras move
+    lens,            // cameras are pinholes
+};
+
+const char* to_string(EffectKind kind);
+
+struct Effect {
+    EffectKind kind;
+    bool on = false;
+    std::string reason;  // "3 of 12 materials in use: leaf, chain, vase_plant"
+};
+
+struct EffectPlan {
+    std::vector<Effect> effects;  // one of each kind, in the order of EffectKind
+
+    bool on(EffectKind kind) const;
+    const Effect& operator[](EffectKind kind) const { return effects[static_cast<std::size_t>(kind)]; }
+};
+
+// Only materials that an instance uses count.
+EffectPlan plan_effects(const Scene& scene);
+
+}  // namespace plumb
