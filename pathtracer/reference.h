@@ -53,12 +53,12 @@ struct ReferenceProgress {
 
 // How a run is watched and interrupted; nothing here changes a pixel.
 struct ReferenceControl {
-    int threads = 0;                                            // 0: all
-    std::function<void(const ReferenceProgress&)> on_progress;  // about once a second, from the calling thread
+    int threads = 0;                                                 // 0: all
+    std::function<void(const ReferenceProgress&)> on_progress = {};  // about once a second, from the calling thread
     const std::atomic<bool>* stop = nullptr;  // set from a signal handler; the run ends after the current pass
     // Written every minute and on stop; resumed from where it exists, also with more samples or another target error.
     // The caller removes it once the frame is in safety.
-    std::filesystem::path checkpoint;
+    std::filesystem::path checkpoint = {};
 };
 
 struct ReferenceResult {

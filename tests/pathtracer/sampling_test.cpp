@@ -1,0 +1,185 @@
+// The random numbers and the maps from them.
+#include <set>
+
+#include <glm/gtc/constants.hpp>
+#include <gtest/gtest.h>
+
+#include "pathtracer/direction_sampling.h"
+#include "pathtracer/discrete_distribution.h"
+#include "pathtracer/environment_distribution.h"
+#include "pathtracer/sample_sequence.h"
+
+namespace plumb {
+namespace {
+
+// A (0, 2)-sequence: any aligned run of 2^m samples has one point in each of the 2^m boxes of every shape 2^-a x
+// 2^-(m-a).
+TEST(SampleSequence, HasOnePointInEveryElementaryBox) {
+    for (const std::uint32_t dimension : {0u, 3u, 17u}) {
+        SampleSequence sequence(7, 12, 34);
+        for (const int m : {1, 4, 7, 10}) {
+            const int count = 1 << m;
+            for (const int first : {0, count, 5 * count}) {
+                for (int a = 0; a <= m; ++a) {
+                    std::set<std::pair<int, int>> boxes;
+                    for (int i = first; i < first + count; ++i) {
+                        sequence.start_sample(2 * i);  // half A
+                        const glm::vec2 point = sequence.point(dimension);
+                        ASSERT_TRUE(point.x >= 0.0f && point.x < 1.0f && point.y >= 0.0f && point.y < 1.0f);
+                        boxes.insert({static_cast<int>(point.x * static_cast<float>(1 << a)),
+                                      static_cast<int>(point.y * static_cast<float>(1 << (m - a)))});
+                    }
+                    EXPECT_EQ(static_cast<int>(boxes.size()), count)
+                        << "dimension " << dimension << " m " << m << " a " << a;
+                }
+            }
+        }
+    }
+}
+
+// Pixels, halves, dimensions and seeds must not know of each other: the correlation of n independent uniform numbers is
+// normal with deviation 1 / sqrt(n), and 4.5 deviations are passed by chance once in 150 000 pairs.
+TEST(SampleSequence, IsUncorrelatedBetweenPixelsHalvesDimensionsAndSeeds) {
+    constexpr int count = 20000;
+    const auto number = [](std::uint64_t seed, int pixel, int sample, std::uint32_t dimension) {
+        SampleSequence sequence(seed, pixel % 200, pixel / 200);
+        sequence.start_sample(sample);
+        return static_cast<double>(sequence.point(dimension).y) - 0.5;
+    };
+    const auto correlation = [&](auto&& a, auto&& b) {
+        double sum = 0.0;
+        for (int i = 0; i < count; ++i) sum += a(i) * b(i);
+        return 12.0 * sum / count;
+    };
+    const double bound = 4.5 / std::sqrt(static_cast<double>(count));
+    const auto base = [&](int i) { return number(1, i, 0, 1); };
+    EXPECT_NEAR(correlation(base, [&](int i) { return number(1, i + 1, 0, 1); }), 0.0, bound) << "pixels";
+    EXPECT_NEAR(correlation(base, [&](int i) { return number(1, i + 200, 0, 1); }), 0.0, bound) << "rows";
+    EXPECT_NEAR(correlation(base, [&](int i) { return number(1, i, 1, 1); }), 0.0, bound) << "halves";
+    EXPECT_NEAR(correlation(base, [&](int i) { return number(1, i, 0, 2); }), 0.0, bound) << "dimensions";
+    EXPECT_NEAR(correlation(base, [&](int i) { return number(2, i, 0, 1); }), 0.0, bound) << "seeds";
+    EXPECT_NEAR(correlation(base, [&](int) { return 1.0; }) / 12.0, 0.0, bound) << "mean";
+}
+
+// Pearson's chi-square over 64 cells of equal probability, for a map of independent numbers: 63 degrees of freedom; 120
+// is passed by chance with probability 2e-5.
+template <typename Cell>
+void expect_uniform_cells(const Cell& cell, const char* what) {
+    constexpr int cells = 64, count = 64000;
+    std::vector<int> hits(cells, 0);
+    for (int i = 0; i < count; ++i) {
+        SampleSequence sequence(3, i % 1000, i / 1000);
+        sequence.start_sample(0);
+        ++hits[static_cast<std::size_t>(std::clamp(cell(sequence.point(0)), 0, cells - 1))];
+    }
+    double statistic = 0.0;
+    for (const int hit : hits)
+        statistic += (hit - count / cells) * (hit - count / cells) / (static_cast<double>(count) / cells);
+    EXPECT_LT(statistic, 120.0) << what;
+}
+
+TEST(CosineHemisphere, HasItsDensityAboutAnyNormal) {
+    for (const glm::vec3 axis : {glm::vec3(0, 0, 1), glm::vec3(0, 0, -1), glm::vec3(1, 0, 0), glm::vec3(1, -2, -3)}) {
+        const glm::vec3 normal = glm::normalize(axis);
+        glm::vec3 tangent, bitangent;
+        complete_basis(normal, tangent, bitangent);
+        EXPECT_NEAR(glm::length(glm::cross(tangent, bitangent) - normal), 0.0f, 1e-6f);
+        expect_uniform_cells(
+            [&](glm::vec2 u) {
+                const glm::vec3 direction = sample_cosine_hemisphere(normal, u);
+                EXPECT_NEAR(glm::length(direction), 1.0f, 1e-6f);
+                // sin^2(theta) and phi are uniform where the density is cos(theta) / pi.
+                const float cosine = glm::dot(direction, normal);
+                const float phi = std::atan2(glm::dot(direction, bitangent), glm::dot(direction, tangent));
+                const int ring = std::clamp(static_cast<int>(8.0f * (1.0f - cosine * cosine)), 0, 7);
+                return 8 * ring + std::clamp(static_cast<int>(8.0f * (phi / glm::two_pi<float>() + 0.5f)), 0, 7);
+            },
+            "cosine hemisphere");
+    }
+}
+
+TEST(TriangleSampling, IsUniformByArea) {
+    expect_uniform_cells(
+        [](glm::vec2 u) {
+            const glm::vec2 at = sample_triangle(u);
+            EXPECT_TRUE(at.x >= 0.0f && at.y >= 0.0f && at.x + at.y <= 1.0f);
+            // With s = 1 - x - y: (1 - s)^2 and y / (1 - s) are uniform over a triangle.
+            const float rest = at.x + at.y;
+            const int band = std::clamp(static_cast<int>(8.0f * rest * rest), 0, 7);
+            return 8 * band + std::clamp(static_cast<int>(8.0f * (rest > 0.0f ? at.y / rest : 0.0f)), 0, 7);
+        },
+        "triangle");
+}
+
+TEST(DiscreteDistribution, ChoosesByWeightAndNeverAWeightlessItem) {
+    const std::vector<double> weights = {0.0, 1.0, 0.0, 3.0, 0.0};
+    const DiscreteDistribution distribution(weights);
+    EXPECT_EQ(distribution.sample(0.0), 1u);
+    EXPECT_EQ(distribution.sample(0.2499), 1u);
+    EXPECT_EQ(distribution.sample(0.25), 3u);
+    EXPECT_EQ(distribution.sample(1.0), 3u);  // what rounds up to 1 is the last item with a weight
+    EXPECT_DOUBLE_EQ(distribution.probability(1), 0.25);
+    EXPECT_DOUBLE_EQ(distribution.probability(2), 0.0);
+    double within = -1.0;
+    EXPECT_EQ(distribution.sample(0.25 + 0.75 * 0.5, within), 3u);
+    EXPECT_DOUBLE_EQ(within, 0.5);
+    EXPECT_TRUE(DiscreteDistribution(std::vector<double>{0.0, 0.0}).empty());
+}
+
+Scene sky_scene() {
+    Scene scene;
+    Texture sky;
+    sky.width = 16, sky.height = 8, sky.wrap_v = TextureWrap::clamp;
+    for (int j = 0; j < 8; ++j) {
+        for (int i = 0; i < 16; ++i) {
+            const float value = i == 3 && j == 2 ? 30.0f : j > 5 ? 0.0f : 0.1f * static_cast<float>(1 + (i * j) % 5);
+            sky.texels.insert(sky.texels.end(), {half(value), half(value), half(value), half(1.0f)});
+        }
+    }
+    scene.textures.push_back(sky);
+    scene.environment = {glm::vec3(1.0f), 0, 1.3f};
+    return scene;
+}
+
+TEST(EnvironmentDistribution, DensityIntegratesToOneAndCoversAllRadiance) {
+    const Scene scene = sky_scene();
+    const EnvironmentDistribution distribution(scene);
+    double integral = 0.0, radiance = 0.0;
+    constexpr int rows = 800, columns = 1600;
+    for (int j = 0; j < rows; ++j) {
+        const double theta = glm::pi<double>() * (j + 0.5) / rows;
+        for (int i = 0; i < columns; ++i) {
+            const double phi = glm::two_pi<double>() * (i + 0.5) / columns;
+            const glm::vec3 direction(std::sin(theta) * std::cos(phi), std::cos(theta),
+                                      std::sin(theta) * std::sin(phi));
+            const double density = distribution.density(direction), value = scene.environment_radiance(direction).y;
+            integral += density * std::sin(theta);
+            radiance += value * std::sin(theta);
+            if (value > 1e-4) {
+                ASSERT_GT(density, 0.0) << direction.x << " " << direction.y << " " << direction.z;
+            }
+        }
+    }
+    const double cell = glm::pi<double>() / rows * glm::two_pi<double>() / columns;
+    // The density jumps at texel borders: the grid of 100 cells per texel places those to 1 %, with both signs.
+    EXPECT_NEAR(integral * cell, 1.0, 2e-3);
+    // The distribution takes sin(theta) of a row's centre: 8 rows make 1 % of it.
+    EXPECT_NEAR(distribution.mean_luminance(), radiance * cell / (4.0 * glm::pi<double>()),
+                0.02 * distribution.mean_luminance());
+}
+
+TEST(EnvironmentDistribution, SamplesCarryTheDensityOfTheirDirection) {
+    const Scene scene = sky_scene();
+    const EnvironmentDistribution distribution(scene);
+    for (int i = 0; i < 2000; ++i) {
+        SampleSequence sequence(5, i, 0);
+        sequence.start_sample(0);
+        const EnvironmentSample sample = distribution.sample(sequence.point(0));
+        const float there = distribution.density(sample.direction);
+        // Within 1e-6 of a texel's border rounding may fall on either side; none of these 2000 lies so near.
+        EXPECT_NEAR(there, sample.density, 1e-3f * sample.density) << i;
+    }
+}
+
+}  // namespace
+}  // namespace plumb

@@ -1,0 +1,138 @@
+// Small scenes with known answers, and statistical comparison with them.
+#pragma once
+
+#include <cmath>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <glm/glm.hpp>
+#include <gtest/gtest.h>
+
+#include "pathtracer/reference.h"
+#include "scenes/scene.h"
+
+namespace plumb {
+
+// Adds a material and returns its index.
+inline int add_material(Scene& scene, const glm::vec3& albedo, const glm::vec3& emission = glm::vec3(0.0f),
+                        bool two_sided = true) {
+    Material material;
+    material.base_colour = albedo;
+    material.emission = emission;
+    material.two_sided = two_sided;
+    scene.materials.push_back(material);
+    return static_cast<int>(scene.materials.size()) - 1;
+}
+
+// Adds a mesh of quads, each counter-clockwise seen from its front, as one instance.
+inline void add_quads(Scene& scene, int material, const std::vector<std::vector<glm::vec3>>& quads,
+                      const glm::mat4& world_from_object = glm::mat4(1.0f)) {
+    Mesh mesh;
+    mesh.material = material;
+    for (const auto& quad : quads) {
+        const auto first = static_cast<unsigned>(mesh.positions.size());
+        for (const glm::vec3& corner : quad) mesh.positions.push_back(corner);
+        for (const glm::vec2 uv : {glm::vec2(0, 0), glm::vec2(1, 0), glm::vec2(1, 1), glm::vec2(0, 1)}) {
+            mesh.uvs.push_back(uv);
+        }
+        mesh.triangles.push_back({first, first + 1, first + 2});
+        mesh.triangles.push_back({first, first + 2, first + 3});
+    }
+    scene.instances.push_back({"quads", static_cast<int>(scene.meshes.size()), world_from_object});
+    scene.meshes.push_back(mesh);
+}
+
+// The horizontal square |x|, |z| <= half at height y, seen from above.
+inline std::vector<glm::vec3> floor_quad(float half, float y = 0.0f) {
+    return {{-half, y, half}, {half, y, half}, {half, y, -half}, {-half, y, -half}};
+}
+
+// The six faces of the cube |x|, |y|, |z| <= 1, fronts inwards.
+inline std::vector<std::vector<glm::vec3>> room_quads() {
+    std::vector<std::vector<glm::vec3>> quads;
+    for (int axis = 0; axis < 3; ++axis) {
+        for (const float side : {-1.0f, 1.0f}) {
+            glm::vec3 centre(0.0f), u(0.0f), v(0.0f);
+            centre[axis] = side, u[(axis + 1) % 3] = 1.0f, v[(axis + 2) % 3] = -side;
+            quads.push_back({centre - u - v, centre + u - v, centre + u + v, centre - u + v});
+        }
+    }
+    return quads;
+}
+
+// A view of `size` x `size` pixels.
+inline View view_of(const glm::vec3& eye, const glm::vec3& target, float field_of_view = 0.6f, int size = 16,
+                    const glm::vec3& up = {0.0f, 1.0f, 0.0f}) {
+    Camera camera = Camera::look_at("test", eye, target, field_of_view, up);
+    camera.near_plane = 1e-3f, camera.far_plane = 1e4f;
+    return View(camera, size, size);
+}
+
+inline ReferenceSettings settings_for(std::vector<std::string> planes, int samples, int bounces = 1) {
+    ReferenceSettings settings;
+    settings.quantities.planes = std::move(planes);
+    settings.quantities.bounces = bounces;
+    settings.samples = samples;
+    return settings;
+}
+
+inline glm::vec3 colour_at(const Image& image, int x, int y) {
+    return {image.at(x, y, 0), image.at(x, y, 1), image.at(x, y, 2)};
+}
+
+// The mean over the pixels of channel 0 of `plane` must be that of `expected` (a function of pixel x, y) within four
+// standard errors, which a right program misses once in 16 000 tests with other seeds, plus 2e-5 of the value for
+// float32.
+inline void expect_mean(const Frame& frame, const std::string& plane, const std::function<double(int, int)>& expected,
+                        const std::string& what = "") {
+    const Image& image = frame.plane(plane);
+    const Image& variance = frame.plane("variance." + plane);
+    double sum = 0.0, expected_sum = 0.0, variance_sum = 0.0;
+    for (int y = 0; y < image.height(); ++y) {
+        for (int x = 0; x < image.width(); ++x) {
+            sum += image.at(x, y);
+            expected_sum += expected(x, y);
+            variance_sum += variance.at(x, y);
+        }
+    }
+    const auto count = static_cast<double>(image.pixel_count());
+    const double mean = sum / count, expected_mean = expected_sum / count,
+                 standard_error = std::sqrt(variance_sum) / count;
+    EXPECT_NEAR(mean, expected_mean, 4.0 * standard_error + 2e-5 * std::abs(expected_mean))
+        << what << " plane " << plane << ", standard error " << standard_error;
+    // A test that could not see a deviation of 3 % would prove nothing.
+    EXPECT_LT(4.0 * standard_error, 0.03 * std::abs(expected_mean) + 1e-6) << what << " plane " << plane;
+}
+
+inline void expect_mean(const Frame& frame, const std::string& plane, double expected, const std::string& what = "") {
+    expect_mean(
+        frame, plane, [expected](int, int) { return expected; }, what);
+}
+
+// Irradiance at `point` with unit `normal` under a polygon of radiance 1 that lies wholly above the horizon.
+//   Source: Lambert 1760; Baum et al. 1989, "Improving Radiosity Solutions Through the Use of Analytically Determined
+//   Form-Factors": sum over edges of angle times (unit edge normal . normal) / 2.
+inline double polygon_irradiance(const glm::dvec3& point, const glm::dvec3& normal,
+                                 const std::vector<glm::vec3>& polygon) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const glm::dvec3 a = glm::normalize(glm::dvec3(polygon[i]) - point);
+        const glm::dvec3 b = glm::normalize(glm::dvec3(polygon[(i + 1) % polygon.size()]) - point);
+        sum += std::acos(glm::clamp(glm::dot(a, b), -1.0, 1.0)) * glm::dot(glm::normalize(glm::cross(a, b)), normal);
+    }
+    return 0.5 * std::abs(sum);
+}
+
+// Both frames hold the same planes with the same bits (and infinities where the other has them).
+inline void expect_same_bits(const Frame& a, const Frame& b) {
+    ASSERT_EQ(a.plane_names(), b.plane_names());
+    for (const std::string& plane : a.plane_names()) {
+        const auto values_a = a.plane(plane).values(), values_b = b.plane(plane).values();
+        std::size_t different = 0;
+        for (std::size_t i = 0; i < values_a.size(); ++i) different += values_a[i] == values_b[i] ? 0 : 1;
+        EXPECT_EQ(different, 0u) << "values of plane " << plane << " differ, of " << values_a.size();
+    }
+}
+
+}  // namespace plumb
