@@ -15,9 +15,11 @@ struct GBufferSettings {
 };
 
 struct ShadowSettings {
-    int cube_size = 1024;  // texels per face, point lights
-    int map_size = 2048;   // texels per side, spot and directional lights
-    float bias = 0.005f;   // metres
+    int cube_size = 1024;     // texels per face, point lights
+    int map_size = 2048;      // texels per side, spot and directional lights
+    int emitter_size = 512;   // texels per face, emissive surfaces
+    int emitter_samples = 1;  // points of an emissive surface whose visibility is averaged: 1 gives hard shadows
+    float bias = 0.005f;      // metres that a receiver is lifted off its surface, besides what the texels call for
 };
 
 struct DirectSettings {

@@ -4,9 +4,15 @@
 
 #include <fmt/format.h>
 
+#include "rasterizer/ambient_obscurance.h"
+#include "rasterizer/composite_pass.h"
+#include "rasterizer/depth_mip_chain.h"
+#include "rasterizer/direct_light_pass.h"
 #include "rasterizer/gbuffer_pass.h"
 #include "rasterizer/gl_error.h"
 #include "rasterizer/motion_pass.h"
+#include "rasterizer/radiosity.h"
+#include "rasterizer/shadow_pass.h"
 #include "rasterizer/truth_pass.h"
 
 namespace plumb {
@@ -28,18 +34,40 @@ void validate(const Method& method) {
     require(gbuffer.guard_band >= 0 && gbuffer.guard_band <= 4096, method,
             fmt::format("gbuffer.guard_band is {}; it must lie between 0 and 4096 pixels", gbuffer.guard_band));
     const bool any_truth = gbuffer.source == SourceOfStage::truth || method.direct.source == SourceOfStage::truth;
+    const ShadowSettings& shadow = method.direct.shadow;
+    for (const auto& [name, value] : {std::pair{"cube_size", shadow.cube_size}, std::pair{"map_size", shadow.map_size},
+                                      std::pair{"emitter_size", shadow.emitter_size}}) {
+        require(value >= 16 && value <= 16384, method,
+                fmt::format("direct.shadow.{} is {}; it must lie between 16 and 16384 texels", name, value));
+    }
+    require(shadow.emitter_samples >= 1 && shadow.emitter_samples <= 64, method,
+            fmt::format("direct.shadow.emitter_samples is {}; it must lie between 1 and 64", shadow.emitter_samples));
+    require(shadow.bias >= 0.0f && std::isfinite(shadow.bias), method,
+            fmt::format("direct.shadow.bias is {}; it must be zero or more metres", shadow.bias));
     require(!(any_truth && gbuffer.guard_band > 0), method,
             "planes from the truth have no guard band; set gbuffer.guard_band to 0");
 }
 
-std::vector<PassDeclaration> declare_passes(const Scene& scene, const Method& method, const Quantities&) {
+std::vector<PassDeclaration> declare_passes(const Scene& scene, const Method& method, const Quantities& quantities) {
     validate(method);
+    const LightSet lights(scene, method.direct.shadow);
     std::vector<PassDeclaration> passes;
+    const auto add_all = [&](std::vector<PassDeclaration> more) {
+        for (PassDeclaration& pass : more) passes.push_back(std::move(pass));
+    };
     passes.push_back(declare_true_gbuffer(method));
     passes.push_back(declare_gbuffer(scene, method));
     passes.push_back(declare_second_layer(method));
     passes.push_back(declare_motion(0));
     passes.push_back(declare_motion(1));
+    add_all(declare_depth_mip_chain());
+    add_all(declare_ambient_obscurance(method, quantities));
+    passes.push_back(declare_shadows(lights, method));
+    passes.push_back(declare_true_direct(method));
+    passes.push_back(declare_direct_light(scene, lights, method, 0));
+    passes.push_back(declare_direct_light(scene, lights, method, 1));
+    add_all(declare_radiosity(method));
+    passes.push_back(declare_composite(scene, method));
     return passes;
 }
 

@@ -19,7 +19,7 @@ PlaneName split(const std::string& plane) {
 }
 
 int channels_of(const std::string& base) {
-    if (base == "depth" || base == "ao") return 1;
+    if (base == "depth" || base == "ao" || base == "confidence") return 1;
     if (base == "motion") return 2;
     return 3;
 }

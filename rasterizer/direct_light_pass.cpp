@@ -1,0 +1,112 @@
+#include "rasterizer/direct_light_pass.h"
+
+#include <array>
+
+#include <fmt/format.h>
+
+#include "rasterizer/environment_light.h"
+#include "rasterizer/shadow_pass.h"
+
+namespace plumb {
+namespace {
+
+// Texture units of direct_light.frag.
+enum Unit : GLuint { depth_unit, normal_unit, albedo_unit, points_unit, maps_unit, emitters_unit, ambient_unit };
+
+bool uses_ambient_visibility(const Scene& scene, const Method& method) {
+    return !scene.environment.is_black() && method.ao.enabled;
+}
+
+const GlTexture* find(const PlaneTextures& planes, const std::string& name) {
+    return planes.has(name) ? &planes.get(name) : nullptr;
+}
+
+}  // namespace
+
+DirectLightPass::DirectLightPass(const PassResources& resources, int layer)
+    : context_(resources.context),
+      layer_(layer),
+      lights_(resources.scene, resources.method.direct.shadow),
+      draw_(context_, resources.programs, "direct_light.frag", defines(resources)),
+      points_(GlBuffer::from(context_, lights_.points)),
+      spots_(GlBuffer::from(context_, lights_.spots)),
+      directionals_(GlBuffer::from(context_, lights_.directionals)),
+      emitters_(GlBuffer::from(context_, lights_.emitters)),
+      pieces_(GlBuffer::from(context_, lights_.pieces)),
+      emitter_cubes_(GlBuffer::from(context_, lights_.emitter_cube_records)),
+      depth_(resources.planes.get("depth")),
+      normal_(resources.planes.get("normal")),
+      albedo_(resources.planes.get("albedo")) {
+    PlaneTextures& planes = resources.planes;
+    // Whoever comes first, this pass for either layer or the truth's, allocates for both layers.
+    if (!planes.has("direct")) planes.create("direct", GL_RGBA16F, resources.layers_of("direct"));
+    target_ = GlFramebuffer(context_, std::array{GlAttachment{&planes.get("direct"), layer}}, {}, "direct");
+    shadow_points_ = find(planes, "shadow.points");
+    shadow_maps_ = find(planes, "shadow.maps");
+    shadow_emitters_ = find(planes, "shadow.emitters");
+    if (uses_ambient_visibility(resources.scene, resources.method)) ambient_visibility_ = &planes.get("ao");
+    if (!lights_.empty()) draw_.program().set("bias", resources.method.direct.shadow.bias);
+    set_environment(resources);
+}
+
+ShaderDefines DirectLightPass::defines(const PassResources& resources) const {
+    ShaderDefines result;
+    const auto add_count = [&](const char* name, std::size_t count) {
+        if (count > 0) result.emplace_back(name, fmt::format("{}", count));
+    };
+    const ShadowSettings& shadow = resources.method.direct.shadow;
+    add_count("POINT_LIGHTS", lights_.points.size());
+    add_count("SPOT_LIGHTS", lights_.spots.size());
+    add_count("DIRECTIONAL_LIGHTS", lights_.directionals.size());
+    add_count("EMITTERS", lights_.emitters.size());
+    if (!lights_.point_cubes.empty()) result.emplace_back("POINT_CUBES", fmt::format("{}.0", shadow.cube_size));
+    if (!lights_.maps.empty()) result.emplace_back("SHADOW_MAPS", fmt::format("{}.0", shadow.map_size));
+    result.emplace_back("EMITTER_CUBE_SIZE", fmt::format("{}.0", shadow.emitter_size));
+    const Environment& environment = resources.scene.environment;
+    if (!environment.is_black()) result.emplace_back("ENVIRONMENT", environment.texture == no_texture ? "1" : "9");
+    if (uses_ambient_visibility(resources.scene, resources.method)) result.emplace_back("AMBIENT_VISIBILITY", "1");
+    return result;
+}
+
+void DirectLightPass::set_environment(const PassResources& resources) const {
+    if (resources.scene.environment.is_black()) return;
+    const IrradianceCoefficients coefficients = project_irradiance(resources.scene);
+    const std::size_t used = resources.scene.environment.texture == no_texture ? 1 : coefficients.size();
+    for (std::size_t k = 0; k < used; ++k) {
+        draw_.program().set(fmt::format("environment_irradiance[{}]", k), coefficients[k]);
+    }
+}
+
+void DirectLightPass::execute(const PassFrame&) {
+    depth_.bind(depth_unit);
+    normal_.bind(normal_unit);
+    albedo_.bind(albedo_unit);
+    if (shadow_points_) shadow_points_->bind(points_unit);
+    if (shadow_maps_) shadow_maps_->bind(maps_unit);
+    if (shadow_emitters_) shadow_emitters_->bind(emitters_unit);
+    if (ambient_visibility_) ambient_visibility_->bind(ambient_unit);
+    const std::array<const GlBuffer*, 6> buffers{&points_,   &spots_,  &directionals_,
+                                                 &emitters_, &pieces_, &emitter_cubes_};
+    for (std::size_t i = 0; i < buffers.size(); ++i) buffers[i]->bind(GL_SHADER_STORAGE_BUFFER, static_cast<GLuint>(i));
+    draw_.program().set("layer", layer_);
+    draw_.draw(target_);
+}
+
+PassDeclaration declare_direct_light(const Scene& scene, const LightSet& lights, const Method& method, int layer) {
+    const std::string prefix(layer == 0 ? "" : second_layer_prefix);
+    PassDeclaration pass;
+    pass.name = layer == 0 ? "direct" : "direct.layer2";
+    pass.inputs = {prefix + "depth", prefix + "normal", prefix + "albedo"};
+    for (std::string& texture : shadow_textures(lights)) pass.inputs.push_back(std::move(texture));
+    if (uses_ambient_visibility(scene, method)) pass.inputs.emplace_back("ao");
+    pass.outputs = {prefix + "direct"};
+    pass.create = [layer](const PassResources& resources) {
+        return std::make_unique<DirectLightPass>(resources, layer);
+    };
+    pass.remark = lights.summary() + (scene.environment.is_black() ? "" : ", environment");
+    if (layer == 0 && method.direct.source == SourceOfStage::truth) pass.disabled = "direct.source is \"truth\"";
+    if (layer == 1 && method.gbuffer.layers < 2) pass.disabled = "gbuffer.layers is 1";
+    return pass;
+}
+
+}  // namespace plumb

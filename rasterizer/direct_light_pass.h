@@ -1,0 +1,42 @@
+// Deferred direct lighting of one layer: the plane `direct`, RGBA16F.
+//
+// Sums what point, spot and directional lights, emissive surfaces and the environment send to each pixel in one
+// segment, times albedo / pi. Unoccluded, analytic lights and emitters of up to 64 triangles are exact; shadows are
+// those of the shadow maps (shadow_pass.h), filtered over 2 x 2 texels.
+//   The environment's irradiance (environment_light.h) is multiplied with the ambient visibility `ao` of the first
+//   layer where the method has it: within the quantity's radius that is occlusion, beyond it the sky shines through
+//   walls. The second layer takes the same pixel's ambient visibility, since no pass computes one of its own. Bad for:
+//   interiors under an open sky; penumbras, unless direct.shadow.emitter_samples is raised.
+#pragma once
+
+#include "rasterizer/fullscreen.h"
+#include "rasterizer/light_set.h"
+#include "rasterizer/pass.h"
+
+namespace plumb {
+
+class DirectLightPass final : public Pass {
+public:
+    DirectLightPass(const PassResources& resources, int layer);
+    void execute(const PassFrame& frame) override;
+
+private:
+    ShaderDefines defines(const PassResources& resources) const;
+    void set_environment(const PassResources& resources) const;
+
+    GlContext& context_;
+    int layer_;
+    LightSet lights_;
+    FullscreenDraw draw_;
+    GlBuffer points_, spots_, directionals_, emitters_, pieces_, emitter_cubes_;
+    const GlTexture &depth_, &normal_, &albedo_;
+    const GlTexture* shadow_points_ = nullptr;
+    const GlTexture* shadow_maps_ = nullptr;
+    const GlTexture* shadow_emitters_ = nullptr;
+    const GlTexture* ambient_visibility_ = nullptr;
+    GlFramebuffer target_;
+};
+
+PassDeclaration declare_direct_light(const Scene& scene, const LightSet& lights, const Method& method, int layer);
+
+}  // namespace plumb
