@@ -41,7 +41,8 @@ void store(std::array<glm::vec4, size>& table, int index, const glm::vec2& value
 
 int spiral_turns(int samples) {
     if (samples < 1 || samples > maximum_spiral_samples) {
-        throw std::out_of_range(fmt::format("{} samples on the spiral; use 1 to {}", samples, maximum_spiral_samples));
+        throw MethodError(
+            fmt::format("{} samples per pixel are out of range; use 1 to {}", samples, maximum_spiral_samples));
     }
     return samples < static_cast<int>(turns_table.size()) ? turns_table[static_cast<std::size_t>(samples)]
                                                           : turns_beyond_table;

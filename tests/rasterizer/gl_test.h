@@ -11,14 +11,25 @@
 
 namespace plumb {
 
-// One context of each kind for the whole process, with debug output, so that every GL error throws at once.
-inline GlContext& test_context(GlBackend backend) {
-    static std::map<GlBackend, std::unique_ptr<GlContext>> contexts;
-    std::unique_ptr<GlContext>& context = contexts[backend];
-    if (!context) context = GlContext::create(backend, true);
-    context->make_current();
-    return *context;
-}
+// One context of each kind for the whole process, with debug output, so that every GL error throws at once. They end
+// with the last test, not with the process: Mesa's own threads are gone by then.
+class TestContexts final : public testing::Environment {
+public:
+    GlContext& get(GlBackend backend) {
+        std::unique_ptr<GlContext>& context = contexts_[backend];
+        if (!context) context = GlContext::create(backend, true);
+        context->make_current();
+        return *context;
+    }
+    void TearDown() override { contexts_.clear(); }
+
+private:
+    std::map<GlBackend, std::unique_ptr<GlContext>> contexts_;
+};
+inline TestContexts* const test_contexts =
+    static_cast<TestContexts*>(testing::AddGlobalTestEnvironment(new TestContexts));
+
+inline GlContext& test_context(GlBackend backend) { return test_contexts->get(backend); }
 
 class GlTest : public testing::TestWithParam<GlBackend> {
 protected:

@@ -1,0 +1,229 @@
+#include "rasterizer/ambient_obscurance.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "ambient_obscurance_counterpart.h"
+#include "gl_test.h"
+#include "rasterizer/gl_error.h"
+#include "screen_space_run.h"
+
+namespace plumb {
+namespace {
+
+using Estimator = AmbientObscuranceEstimator;
+using AmbientObscuranceTest = GlTest;
+PLUMBLINE_BOTH_BACKENDS(AmbientObscuranceTest);
+
+Method unblurred(AmbientObscuranceSettings ao) {
+    ao.blur.radius = 0;
+    Method method;
+    method.ao = ao;
+    return method;
+}
+
+Quantities ambient_visibility_within(float radius, Falloff falloff = Falloff::quadratic) {
+    return {.planes = {"ao"}, .ao_radius = radius, .ao_falloff = falloff};
+}
+
+// Compares pass and counterpart pixel by pixel; returns the share of pixels that rounding leaves open.
+double expect_agreement(GlContext& context, const counterpart::Layers& given, const AmbientObscuranceSettings& settings,
+                        const Quantities& quantities) {
+    ScreenSpaceRun run(context, given, unblurred(settings), quantities);
+    const Image ao = run.render("ao", 1);
+    const int width = given.width(), height = given.height();
+    int ambiguous = 0, wrong = 0;
+    for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < width; ++x) {
+            const counterpart::Visibility expected =
+                counterpart::ambient_visibility(run.layers(), settings, quantities, {x, y});
+            ambiguous += expected.ambiguous;
+            if (expected.ambiguous) continue;
+            const double actual = ao.at(x, height - 1 - y);
+            // Float positions 4 m away are good to 1e-6 m; divided by sqrt(eps) = 0.03 m (sao2012: by eps = 0.001 m^2,
+            // but times heights below 1 m) a tap's obscurance is good to about 3e-5 (1e-3). The square root of the mean
+            // is steep near 0, so its square is compared there.
+            const double tolerance = settings.estimator == Estimator::sao2012 ? 1e-3 : 1e-4;
+            const double square_error =
+                std::abs(std::pow(1.0 - actual, 2.0) - std::pow(1.0 - expected.visibility, 2.0));
+            const bool right = std::abs(actual - expected.visibility) < tolerance || square_error < tolerance;
+            if (!right && ++wrong < 5) {
+                ADD_FAILURE() << "pixel (" << x << ", " << y << ") from the bottom left: " << actual << ", expected "
+                              << expected.visibility << " (mean obscurance " << expected.mean << ")";
+            }
+        }
+    }
+    EXPECT_EQ(wrong, 0);
+    return static_cast<double>(ambiguous) / (width * height);
+}
+
+struct Case {
+    const char* name;
+    AmbientObscuranceSettings settings;
+    Falloff falloff = Falloff::quadratic;
+};
+
+const std::vector<Case> cases = {
+    {"as the paper", {}},
+    {"one layer", {.layers = 1}},
+    {"without MIP chain", {.use_mip_chain = false}},
+    {"one layer without MIP chain", {.layers = 1, .use_mip_chain = false}},
+    {"coarse from the first pixel on", {.mip_offset = 0}},
+    {"the demo's", {.estimator = Estimator::g3d_demo, .intensity = 1.2f}},
+    {"SAO", {.estimator = Estimator::sao2012, .intensity = 0.1f}, Falloff::cubic},
+    {"linear", {.estimator = Estimator::linear}},
+    {"linear with a hard radius", {.estimator = Estimator::linear}, Falloff::hard},
+    {"one tap", {.samples = 1}},
+    {"odd number of taps", {.samples = 37, .bias = 0.1f, .epsilon = 0.01f, .intensity = 0.5f}},
+};
+
+TEST_P(AmbientObscuranceTest, AgreesWithItsCounterpartOnNoise) {
+    const counterpart::Layers noise = counterpart::random_layers(slanted_view(97, 66), 1);
+    for (const Case& c : cases) {
+        SCOPED_TRACE(c.name);
+        const double ambiguous =
+            expect_agreement(context(), noise, c.settings, ambient_visibility_within(0.8f, c.falloff));
+        EXPECT_LT(ambiguous, 0.02);  // the test would otherwise look at too little
+    }
+}
+
+// A floor, a wall, and a table in front of them under which the second layer sees.
+std::vector<Patch> room() {
+    return {{{-4.0f, -1.0f, -7.0f}, {8.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 8.0f}},
+            {{-4.0f, -1.0f, -6.0f}, {8.0f, 0.0f, 0.0f}, {0.0f, 6.0f, 0.0f}},
+            {{-0.8f, -0.5f, -5.5f}, {1.6f, 0.0f, 0.0f}, {0.0f, 0.0f, 2.0f}}};
+}
+
+TEST_P(AmbientObscuranceTest, AgreesWithItsCounterpartInARoom) {
+    const counterpart::Layers layers = layers_of_patches(slanted_view(120, 80), room());
+    for (const Case& c : cases) {
+        SCOPED_TRACE(c.name);
+        EXPECT_LT(expect_agreement(context(), layers, c.settings, ambient_visibility_within(1.0f, c.falloff)), 0.02);
+    }
+}
+
+TEST_P(AmbientObscuranceTest, AnInfinitePlaneIsFullyVisible) {
+    const std::vector<Patch> floor = {{{-500.0f, -1.0f, -900.0f}, {1000.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 1000.0f}}};
+    for (const bool use_mip_chain : {false, true}) {
+        ScreenSpaceRun run(context(), layers_of_patches(slanted_view(80, 60), floor),
+                           unblurred({.samples = 1000, .use_mip_chain = use_mip_chain}),
+                           ambient_visibility_within(2.0f));
+        const Image ao = run.render("ao", 1);
+        // Taps lie in the tangent plane up to rounding and to 0.003 degrees of the normal's encoding, 1e-4 m at 2 m:
+        // all below the bias of 0.01 m. No other value than 1 is right, with the MIP chain as well: its points are
+        // exact.
+        for (const float value : ao.values()) ASSERT_EQ(value, 1.0f) << "MIP chain " << use_mip_chain;
+    }
+}
+
+TEST_P(AmbientObscuranceTest, ACornerIsDarkerTheCloserOneComes) {
+    const View view = slanted_view(81, 121);
+    const counterpart::Layers layers = layers_of_patches(view, {room()[0], room()[1]});
+    ScreenSpaceRun run(context(), layers, unblurred({.samples = 1000}), ambient_visibility_within(1.0f));
+    const Image ao = run.render("ao", 1);
+    // Down the middle column, wall pixels by their height above the floor.
+    double last = 0.0;
+    for (const float height : {0.1f, 0.3f, 0.6f, 1.2f}) {
+        const double tan_half = view.tan_half().y;
+        const int row = static_cast<int>(0.5 * (1.0 - (-1.0 + height) / 6.0 / tan_half) * view.height());
+        const double visibility = ao.at(40, row);
+        EXPECT_GT(visibility, last + 0.02) << height << " m above the floor";
+        last = visibility;
+    }
+    EXPECT_EQ(last, 1.0) << "1.2 m above the floor nothing is within the radius of 1 m";
+}
+
+TEST_P(AmbientObscuranceTest, ASecondLayerDarkensWhatHidesBehindTheFirst) {
+    // A wall with a slab 0.2 m before it, and between camera and slab a board that hides the slab and no more.
+    const std::vector<Patch> patches = {{{-5.0f, -5.0f, -5.0f}, {10.0f, 0.0f, 0.0f}, {0.0f, 10.0f, 0.0f}},
+                                        {{-0.5f, -0.5f, -4.8f}, {1.0f, 0.0f, 0.0f}, {0.0f, 1.0f, 0.0f}},
+                                        {{-0.22f, -0.22f, -2.0f}, {0.44f, 0.0f, 0.0f}, {0.0f, 0.44f, 0.0f}}};
+    const View view = slanted_view(100, 100);
+    const counterpart::Layers layers = layers_of_patches(view, patches);
+    const auto visibility = [&](int layer_count) {
+        ScreenSpaceRun run(context(), layers, unblurred({.samples = 200, .layers = layer_count}),
+                           ambient_visibility_within(1.0f));
+        return run.render("ao", 1);
+    };
+    const Image one = visibility(1), two = visibility(2);
+    int lower = 0;
+    for (std::size_t i = 0; i < one.pixel_count(); ++i) {
+        ASSERT_LE(two.values()[i], one.values()[i]) << "pixel " << i;
+        lower += two.values()[i] < one.values()[i] - 0.02f;
+    }
+    // Around the board of about 19 pixels' side the wall is obscured by the slab behind, up to 0.5 m or 9 pixels away.
+    EXPECT_GT(lower, 400);
+    const int beside_board = 50 + 13;
+    EXPECT_EQ(one.at(beside_board, 50), 1.0f) << "the board is 3 m away, the slab unseen";
+    EXPECT_LT(two.at(beside_board, 50), 0.95f);
+}
+
+TEST_P(AmbientObscuranceTest, BackgroundAndRadiiBelowAPixelAreFullyVisible) {
+    const counterpart::Layers noise = counterpart::random_layers(slanted_view(40, 30), 5);
+    {
+        ScreenSpaceRun run(context(), noise, unblurred({}), ambient_visibility_within(0.01f));
+        const Image ao = run.render("ao", 1);
+        for (const float value : ao.values()) ASSERT_EQ(value, 1.0f);
+    }
+    ScreenSpaceRun run(context(), noise, unblurred({}), ambient_visibility_within(1.0f));
+    const Image ao = run.render("ao", 1);
+    for (std::size_t i = 0; i < ao.pixel_count(); ++i) {
+        if (noise.depth[0].values()[i] == 0.0f) {
+            ASSERT_EQ(ao.values()[i], 1.0f) << "background pixel " << i;
+        }
+    }
+}
+
+TEST_P(AmbientObscuranceTest, TheSameFrameGivesTheSameBitsAndAllocatesNothing) {
+    Method method;  // blurred
+    ScreenSpaceRun run(context(), counterpart::random_layers(slanted_view(128, 72), 2), method,
+                       ambient_visibility_within(0.8f));
+    const Image first = run.render("ao", 1);
+    const std::size_t bytes = context().allocated_bytes();
+    for (int frame = 0; frame < 3; ++frame) {
+        const Image again = run.render("ao", 1);
+        ASSERT_TRUE(std::ranges::equal(first.values(), again.values()));
+    }
+    EXPECT_EQ(context().allocated_bytes(), bytes);
+}
+
+TEST_P(AmbientObscuranceTest, AGuardBandChangesOnlyWhatLiesNearTheBorder) {
+    // The inner view must see the taps that fall into the guard band: compare with the counterpart of the whole image.
+    const int band = 20;
+    const View view = slanted_view(60, 50).with_guard_band(band);
+    const counterpart::Layers noise = counterpart::random_layers(view, 8);
+    Method method = unblurred({});
+    method.gbuffer.guard_band = band;
+    const Quantities quantities = ambient_visibility_within(0.5f);
+    ScreenSpaceRun run(context(), noise, method, quantities);
+    const Image ao = run.render("ao", 1);
+    for (int y = band; y < view.height() - band; ++y) {
+        for (int x = band; x < view.width() - band; ++x) {
+            const counterpart::Visibility expected =
+                counterpart::ambient_visibility(run.layers(), method.ao, quantities, {x, y});
+            // As in expect_agreement; on noise no pixel is near 1, where the square root is steep.
+            if (!expected.ambiguous) {
+                ASSERT_NEAR(ao.at(x, view.height() - 1 - y), expected.visibility, 1e-3);
+            }
+        }
+    }
+}
+
+TEST_P(AmbientObscuranceTest, ParametersOutOfRangeAreRefusedWithTheRemedy) {
+    const auto error_of = [&](const AmbientObscuranceSettings& settings, float radius) -> std::string {
+        try {
+            ScreenSpaceRun run(context(), counterpart::random_layers(slanted_view(8, 8), 1), unblurred(settings),
+                               ambient_visibility_within(radius));
+        } catch (const MethodError& error) {
+            return error.what();
+        }
+        return "no error";
+    };
+    EXPECT_THAT(error_of({}, std::numeric_limits<float>::infinity()), testing::HasSubstr("ao_radius is inf; set it"));
+    EXPECT_THAT(error_of({.samples = 0}, 1.0f), testing::HasSubstr("use 1 to 1000"));
+    EXPECT_THAT(error_of({.layers = 3}, 1.0f), testing::HasSubstr("use 1 or 2"));
+    EXPECT_THAT(error_of({.epsilon = 0.0f}, 1.0f), testing::HasSubstr("must be positive"));
+}
+
+}  // namespace
+}  // namespace plumb

@@ -1,0 +1,50 @@
+// One direction of the bilateral blur on the CPU, from the formulas of rasterizer/bilateral_blur.h.
+#pragma once
+
+#include "sample_spiral_counterpart.h"
+
+namespace plumb::counterpart {
+
+inline double edge_weight(const Layers& layers, const BilateralBlurSettings& settings, double radius, Pixel centre,
+                          Pixel tap) {
+    const double depth = depth_at(layers, 0, tap);
+    if (depth == 0.0) return 0.0;
+    const glm::dvec3 v = point_at(layers, 0, tap) - point_at(layers, 0, centre);
+    const glm::dvec3 n = vector_at(layers, layers.normal[0], centre), m = vector_at(layers, layers.normal[0], tap);
+    const double off_plane = std::max(std::abs(glm::dot(v, n)), std::abs(glm::dot(v, m))) / glm::length(v);
+    const double plane = std::max(0.0, 1.0 - 2.0 * settings.plane_sharpness * off_plane);
+    return std::max(0.0, 1.0 - settings.depth_sharpness * std::abs(depth - depth_at(layers, 0, centre)) / radius) *
+           std::max(0.0, 1.0 - settings.normal_sharpness * (1.0 - glm::dot(n, m))) * plane * plane;
+}
+
+// Blurs `image` along (dx, dy), which is (1, 0) or (0, 1).
+inline Image blurred(const Layers& layers, const BilateralBlurSettings& settings, double radius, const Image& image,
+                     int dx, int dy) {
+    Image result = image;
+    const double sigma = 0.5 * settings.radius;
+    for (int y = 0; y < layers.height(); ++y) {
+        for (int x = 0; x < layers.width(); ++x) {
+            if (depth_at(layers, 0, {x, y}) == 0.0) continue;
+            for (int channel = 0; channel < image.channels(); ++channel) {
+                const int row = layers.height() - 1 - y;
+                double sum = image.at(x, row, channel), total = 1.0;
+                for (const int side : {-1, 1}) {
+                    double smallest = 1.0;
+                    for (int i = 1; i <= settings.radius; ++i) {
+                        const Pixel tap{x + side * i * settings.step * dx, y + side * i * settings.step * dy};
+                        double edge = inside(layers, tap) ? edge_weight(layers, settings, radius, {x, y}, tap) : 0.0;
+                        if (settings.monotonic) edge = smallest = std::min(smallest, edge);
+                        if (edge == 0.0) continue;
+                        const double weight = edge * std::exp(-0.5 * i * i / (sigma * sigma));
+                        sum += weight * image.at(tap.x, layers.height() - 1 - tap.y, channel);
+                        total += weight;
+                    }
+                }
+                result.at(x, row, channel) = static_cast<float>(sum / total);
+            }
+        }
+    }
+    return result;
+}
+
+}  // namespace plumb::counterpart

@@ -1,0 +1,144 @@
+// The screen-space passes once more: on the CPU, in double precision, straight from the formulas, for the tests.
+//
+// A tap falls into one pixel or its neighbour: where a double and a float calculation may disagree on that (or on any
+// other yes-or-no question), the counterpart says so, and the test leaves the pixel out.
+#pragma once
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <random>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "frames/image.h"
+#include "rasterizer/method.h"
+#include "rasterizer/sample_spiral.h"
+#include "scenes/camera.h"
+
+namespace plumb::counterpart {
+
+// One or two layers of a view; images are stored top row first, depth is 0 where there is nothing.
+struct Layers {
+    View view;
+    std::vector<Image> depth, normal, radiance;
+    int width() const { return view.width(); }
+    int height() const { return view.height(); }
+};
+
+// Pixels as the passes count them: from the bottom left.
+struct Pixel {
+    int x, y;
+    bool operator==(const Pixel&) const = default;
+};
+
+inline bool inside(const Layers& layers, Pixel p) {
+    return p.x >= 0 && p.y >= 0 && p.x < layers.width() && p.y < layers.height();
+}
+inline double depth_at(const Layers& layers, int layer, Pixel p) {
+    return layers.depth[layer].at(p.x, layers.height() - 1 - p.y);
+}
+inline glm::dvec3 vector_at(const Layers& layers, const Image& image, Pixel p) {
+    const auto values = image.pixel(p.x, layers.height() - 1 - p.y);
+    return {values[0], values[1], values[2]};
+}
+inline glm::dvec3 point_at(const Layers& layers, int layer, Pixel p) {
+    const glm::dvec2 tan_half(layers.view.tan_half());
+    const double u = 2.0 * (p.x + 0.5) / layers.width() - 1.0;
+    const double v = 2.0 * (p.y + 0.5) / layers.height() - 1.0;
+    return depth_at(layers, layer, p) * glm::dvec3(u * tan_half.x, v * tan_half.y, -1.0);
+}
+
+// Rotated-grid subsampling, step by step: the pixel of level 0 that a texel of `level` shows.
+inline Pixel pixel_of_texel(Pixel texel, int level) {
+    for (; level > 0; --level) texel = {2 * texel.x + (texel.y & 1), 2 * texel.y + (texel.x & 1)};
+    return texel;
+}
+
+struct Tap {
+    Pixel pixel;   // where the spiral points
+    Pixel source;  // the pixel of level 0 that is read
+};
+
+struct SpiralRequest {
+    Pixel pixel;
+    double radius_pixels;
+    int samples;
+    std::uint32_t jitter;  // in 2^-16
+    bool use_mip_chain;
+    int mip_offset;
+    int minimum_mip_level = 0;
+    double minimum_distance = 0.0;
+};
+
+// The taps of a pixel; `ambiguous` becomes true where rounding may move one of them.
+inline std::vector<Tap> spiral_taps(const Layers& layers, const SpiralRequest& request, bool& ambiguous) {
+    const std::uint32_t x = static_cast<std::uint32_t>(request.pixel.x),
+                        y = static_cast<std::uint32_t>(request.pixel.y);
+    const std::uint32_t hash = (3 * x) ^ (y + x * y);
+    // 10 radians a step, and the jitter's share of tau turns, both in units of 2^-32 turns that wrap around.
+    const auto spin_unit = static_cast<std::uint32_t>(std::fmod(10.0 / (2.0 * std::numbers::pi), 1.0) * 0x1p32);
+    const auto jitter_unit = static_cast<std::uint32_t>(65536.0 * spiral_turns(request.samples) / request.samples);
+    const std::uint32_t turned = hash * spin_unit + request.jitter * jitter_unit;
+    const double spin = static_cast<double>(turned >> 22) / 1024.0;
+
+    const int smaller_side = std::min(layers.width(), layers.height());
+    const int coarsest =
+        request.use_mip_chain ? std::min(5, static_cast<int>(std::bit_width(unsigned(smaller_side))) - 1) : 0;
+    std::vector<Tap> taps;
+    for (int i = 0; i < request.samples; ++i) {
+        const double alpha = (i + request.jitter / 65536.0) / request.samples;
+        const double distance = std::max(request.minimum_distance, alpha * request.radius_pixels);
+        const double turns = static_cast<double>(i) / request.samples * spiral_turns(request.samples) + spin;
+        const double angle = 2.0 * std::numbers::pi * turns;
+        const double dx = distance * std::cos(angle) + 0.5, dy = distance * std::sin(angle) + 0.5;
+        // Float rounding of the distance and of the rotated direction moves a tap by a few 1e-7 of the distance.
+        const double doubt = 1e-6 * std::max(1.0, distance);
+        for (const double d : {dx, dy}) ambiguous |= std::abs(d - std::round(d)) < doubt;
+        ambiguous |= std::abs(distance - std::round(distance)) < doubt && distance > 0.5;
+
+        const Pixel tap{request.pixel.x + static_cast<int>(std::floor(dx)),
+                        request.pixel.y + static_cast<int>(std::floor(dy))};
+        const int level_wanted = distance < 1.0 ? 0 : static_cast<int>(std::floor(std::log2(distance)));
+        const int level =
+            std::clamp(level_wanted - request.mip_offset, std::min(request.minimum_mip_level, coarsest), coarsest);
+        const Pixel texel{std::min(tap.x >> level, (layers.width() >> level) - 1),
+                          std::min(tap.y >> level, (layers.height() >> level) - 1)};
+        taps.push_back({tap, pixel_of_texel(texel, level)});
+    }
+    return taps;
+}
+
+// Two layers of noise: every pixel has a depth and a normal of its own, some have nothing in one layer or in both.
+// Nothing is smooth, so that a tap one pixel off is sure to show.
+inline Layers random_layers(const View& view, unsigned seed) {
+    std::mt19937 generator(seed);
+    std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
+    Layers layers{view, {}, {}, {}};
+    for (int layer = 0; layer < 2; ++layer) {
+        Image depth(view.width(), view.height(), 1), normal(view.width(), view.height(), 3),
+            radiance(view.width(), view.height(), 3);
+        for (int y = 0; y < view.height(); ++y) {
+            for (int x = 0; x < view.width(); ++x) {
+                const bool missing =
+                    uniform(generator) < (layer == 0 ? 0.1f : 0.4f) || (layer == 1 && layers.depth[0].at(x, y) == 0.0f);
+                const float nearest = layer == 0 ? 2.0f : layers.depth[0].at(x, y) + 0.1f;
+                depth.at(x, y) = missing ? 0.0f : nearest + uniform(generator);
+                const glm::vec3 direction =
+                    glm::normalize(glm::vec3(2.0f * uniform(generator) - 1.0f, 2.0f * uniform(generator) - 1.0f, 1.0f));
+                for (int c = 0; c < 3; ++c) {
+                    normal.at(x, y, c) = missing ? 0.0f : direction[c];
+                    radiance.at(x, y, c) = missing ? 0.0f : uniform(generator);
+                }
+            }
+        }
+        layers.depth.push_back(depth);
+        layers.normal.push_back(normal);
+        layers.radiance.push_back(radiance);
+    }
+    return layers;
+}
+
+}  // namespace plumb::counterpart
