@@ -33,7 +33,10 @@ struct ImportOptions {
     NormalSource normals = NormalSource::file;
     float crease_angle = 1.0471976f;          // radians (60 degrees), for NormalSource::smooth
     std::vector<std::string> drop_materials;  // triangles of these materials are left out; unknown names are errors
-    bool flip_winding = false;                // turns every triangle and normal round
+    // File names (without folders) of textures whose rows are stored bottom row first, as some TGA converters leave
+    // them; names that no material in the file uses are errors.
+    std::vector<std::string> upside_down_textures;
+    bool flip_winding = false;  // turns every triangle and normal round
     // Exporters write a grey Kd (0.588 from 3ds Max) under every texture, which a strict reader multiplies with it and
     // so darkens the whole scene. True: a texture stands alone.
     bool ignore_diffuse_colour_under_texture = false;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <tuple>
 
@@ -101,6 +102,12 @@ public:
             note("see-through materials left out (there is no refraction): {}", fmt::join(see_through, ", "));
         }
         drop_by_name();
+        for (const std::string& name : options_.upside_down_textures) {
+            if (!flipped_.contains(name)) {
+                throw SceneError(
+                    fmt::format("'{}' uses no texture '{}' that could be upside down", file_.string(), name));
+            }
+        }
         return left_out_;
     }
 
@@ -146,10 +153,19 @@ private:
         const auto key = std::tuple(std::string(path.C_Str()), content, wrap_u, wrap_v);
         if (const auto known = textures_.find(key); known != textures_.end()) return known->second;
         Texture loaded = read_texture(path.C_Str(), content, material);
+        if (is_upside_down(path.C_Str())) flip_rows(loaded);
         loaded.wrap_u = wrap_u;
         loaded.wrap_v = wrap_v;
         scene_.textures.push_back(std::move(loaded));
         return textures_[key] = static_cast<int>(scene_.textures.size()) - 1;
+    }
+
+    bool is_upside_down(std::string path) {
+        std::ranges::replace(path, '\\', '/');
+        const std::string name = std::filesystem::path(path).filename();
+        if (std::ranges::find(options_.upside_down_textures, name) == options_.upside_down_textures.end()) return false;
+        flipped_.insert(name);
+        return true;
     }
 
     Texture read_texture(const std::string& path, TextureContent content, const std::string& material) {
@@ -257,6 +273,7 @@ private:
     const ImportOptions& options_;
     Scene& scene_;
     std::vector<bool> left_out_;
+    std::set<std::string> flipped_;
     std::map<std::tuple<std::string, TextureContent, TextureWrap, TextureWrap>, int> textures_;
 };
 

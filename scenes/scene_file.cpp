@@ -58,6 +58,7 @@ ImportOptions read_import_options(TomlReader reader) {
     float crease = glm::degrees(options.crease_angle);
     if (reader.read("crease_angle", crease)) options.crease_angle = glm::radians(crease);
     reader.read("drop_materials", options.drop_materials);
+    reader.read("upside_down_textures", options.upside_down_textures);
     reader.read("flip_winding", options.flip_winding);
     reader.read("ignore_diffuse_colour_under_texture", options.ignore_diffuse_colour_under_texture);
     reader.finish();

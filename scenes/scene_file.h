@@ -11,6 +11,7 @@
 //     normals = "file"                      # "file", "face" or "smooth"
 //     crease_angle = 60.0                   # for "smooth": edges sharper than this stay sharp
 //     drop_materials = ["banner"]
+//     upside_down_textures = ["lion.jpg"]   # stored bottom row first
 //     flip_winding = false
 //     ignore_diffuse_colour_under_texture = false
 //     [materials."brick"]                   # overrides; the name must exist

@@ -1,5 +1,6 @@
 #include "scenes/texture_file.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>
@@ -104,6 +105,15 @@ Texture decode_texture(std::span<const std::byte> bytes, const std::string& name
     const std::unique_ptr<ImageInput> input = ImageInput::open(name, &settings, &memory);
     if (!input) throw SceneError(fmt::format("embedded texture '{}' cannot be decoded: {}", name, OIIO::geterror()));
     return read(*input, name, content);
+}
+
+void flip_rows(Texture& texture) {
+    const std::ptrdiff_t row = 4 * static_cast<std::ptrdiff_t>(texture.width);
+    for (int j = 0; j < texture.height / 2; ++j) {
+        const auto upper = texture.texels.begin() + j * row;
+        const auto lower = texture.texels.begin() + (texture.height - 1 - j) * row;
+        std::swap_ranges(upper, upper + row, lower);
+    }
 }
 
 Texture missing_texture(const std::string& name) {

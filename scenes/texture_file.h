@@ -23,6 +23,9 @@ Texture load_texture(const std::filesystem::path& file, TextureContent content);
 // it has one, as the format is told by it.
 Texture decode_texture(std::span<const std::byte> bytes, const std::string& name, TextureContent content);
 
+// Turns the picture upside down.
+void flip_rows(Texture& texture);
+
 // A magenta and black checker, the visible stand-in for a texture that could not be read.
 Texture missing_texture(const std::string& name);
 
