@@ -10,6 +10,9 @@
 namespace plumb {
 namespace {
 
+// Lights the sky's share of both layers, guard band included, by ambient visibility.
+constexpr std::string_view guard_band_reader = "direct";
+
 bool is_blurred(const Method& method) { return method.ao.blur.radius > 0; }
 
 std::string output_plane(const Method& method) { return is_blurred(method) ? "ao.unfiltered" : "ao"; }
@@ -96,7 +99,7 @@ AmbientObscurancePass::AmbientObscurancePass(const PassResources& resources)
       spiral_(resources.context, resources.method.ao.samples),
       draw_(resources.context, resources.programs, "ambient_obscurance.frag", shader_defines(resources)),
       target_(make_target(resources)),
-      area_(resources, glm::ivec2(blur_reach(resources.method.ao.blur))) {}
+      area_(resources, glm::ivec2(blur_reach(resources.method.ao.blur)), guard_band_reader) {}
 
 void AmbientObscurancePass::execute(const PassFrame&) {
     depth_.bind(0);
@@ -123,7 +126,8 @@ std::vector<PassDeclaration> declare_ambient_obscurance(const Method& method, co
                                                  .settings = method.ao.blur,
                                                  .quantity_radius = quantities.ao_radius,
                                                  .input = output_plane(method),
-                                                 .output = "ao"}));
+                                                 .output = "ao",
+                                                 .read_beyond = std::string(guard_band_reader)}));
         passes.back().disabled = passes.front().disabled;
     }
     return passes;

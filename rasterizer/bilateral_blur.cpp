@@ -56,9 +56,11 @@ GlFramebuffer framebuffer_of(const GlTexture& texture) {
 
 }  // namespace
 
-InnerArea::InnerArea(const PassResources& resources, glm::ivec2 reach) : context_(resources.context) {
+InnerArea::InnerArea(const PassResources& resources, glm::ivec2 reach, std::string_view read_beyond)
+    : context_(resources.context) {
     const glm::ivec2 size(resources.planes.width(), resources.planes.height());
-    const glm::ivec2 margin = glm::max(glm::ivec2(resources.method.gbuffer.guard_band) - reach, glm::ivec2(0));
+    const int guard_band = resources.is_read(read_beyond) ? 0 : resources.method.gbuffer.guard_band;
+    const glm::ivec2 margin = glm::max(glm::ivec2(guard_band) - reach, glm::ivec2(0));
     corner_ = margin;
     size_ = size - 2 * margin;
 }
@@ -82,8 +84,8 @@ BilateralBlurPass::BilateralBlurPass(const PassResources& resources, const Bilat
                      defines_along("ivec2(0, 1)", request)),
       half_blurred_target_(framebuffer_of(half_blurred_)),
       target_(framebuffer_of(resources.planes.create(request.output, noisy_.format(), 1))),
-      area_of_rows_(resources, {0, blur_reach(request.settings)}),
-      area_(resources, {0, 0}) {}
+      area_of_rows_(resources, {0, blur_reach(request.settings)}, request.read_beyond),
+      area_(resources, {0, 0}, request.read_beyond) {}
 
 void BilateralBlurPass::execute(const PassFrame&) {
     noisy_.bind(0);

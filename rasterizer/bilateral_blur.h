@@ -27,7 +27,9 @@ namespace plumb {
 // side for the passes that read it. While it lives, nothing outside is drawn.
 class InnerArea {
 public:
-    InnerArea(const PassResources& resources, glm::ivec2 reach);
+    // Where somebody reads the plane `read_beyond`, whose pass reads the guard band as well, the area is the whole
+    // image.
+    InnerArea(const PassResources& resources, glm::ivec2 reach, std::string_view read_beyond = {});
 
     class Restriction {
     public:
@@ -53,6 +55,7 @@ struct BilateralBlurRequest {
     BilateralBlurSettings settings;  // radius > 0
     float quantity_radius = 1.0f;    // metres
     std::string input, output;       // planes
+    std::string read_beyond = {};    // see InnerArea
 };
 
 class BilateralBlurPass final : public Pass {
