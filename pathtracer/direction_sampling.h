@@ -1,6 +1,7 @@
 // Maps from the unit square to directions and to triangles, with the densities that belong to them.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include <glm/glm.hpp>
@@ -18,17 +19,23 @@ inline void complete_basis(const glm::vec3& n, glm::vec3& tangent, glm::vec3& bi
     bitangent = {b, sign + n.y * n.y * a, -n.y};
 }
 
+// Sine and cosine of |angle| <= pi / 4 by their Taylor polynomials, to 4e-8; several times faster than the library's
+// for all angles, and free of calls in the innermost loop.
+inline void small_sine_cosine(float angle, float& sine, float& cosine) {
+    const float x = angle * angle;
+    sine = angle * (1.0f + x * (-1.0f / 6.0f + x * (1.0f / 120.0f + x * (-1.0f / 5040.0f + x * (1.0f / 362880.0f)))));
+    cosine = 1.0f + x * (-0.5f + x * (1.0f / 24.0f + x * (-1.0f / 720.0f + x * (1.0f / 40320.0f))));
+}
+
 // Uniform on the unit disc; keeps neighbours neighbours. Source: Shirley, Chiu 1997.
 inline glm::vec2 sample_disc(glm::vec2 u) {
     const glm::vec2 offset = 2.0f * u - 1.0f;
     if (offset.x == 0.0f && offset.y == 0.0f) return {0.0f, 0.0f};
-    constexpr float quarter_pi = glm::quarter_pi<float>();
-    if (std::abs(offset.x) > std::abs(offset.y)) {
-        const float angle = quarter_pi * (offset.y / offset.x);
-        return offset.x * glm::vec2(std::cos(angle), std::sin(angle));
-    }
-    const float angle = glm::half_pi<float>() - quarter_pi * (offset.x / offset.y);
-    return offset.y * glm::vec2(std::cos(angle), std::sin(angle));
+    const bool wide = std::abs(offset.x) > std::abs(offset.y);
+    const float radius = wide ? offset.x : offset.y, other = wide ? offset.y : offset.x;
+    float sine, cosine;
+    small_sine_cosine(glm::quarter_pi<float>() * (other / radius), sine, cosine);
+    return wide ? radius * glm::vec2(cosine, sine) : radius * glm::vec2(sine, cosine);
 }
 
 // A direction about unit `normal` with density cos(theta) / pi.
@@ -36,7 +43,7 @@ inline glm::vec3 sample_cosine_hemisphere(const glm::vec3& normal, glm::vec2 u) 
     glm::vec3 tangent, bitangent;
     complete_basis(normal, tangent, bitangent);
     const glm::vec2 disc = sample_disc(u);
-    const float height = std::sqrt(std::fmax(0.0f, 1.0f - disc.x * disc.x - disc.y * disc.y));
+    const float height = std::sqrt(std::max(0.0f, 1.0f - disc.x * disc.x - disc.y * disc.y));
     return disc.x * tangent + disc.y * bitangent + height * normal;
 }
 

@@ -97,7 +97,8 @@ void LightTable::find_emitters(std::vector<double>& powers) {
                 }
                 emitted /= 5.0;
             }
-            emitters_.push_back({instance, i, area});
+            const glm::vec3 normal = area > 0.0f ? triangle.scaled_normal() / (2.0f * area) : glm::vec3(0.0f);
+            emitters_.push_back({triangle, normal, triangle.error(), area, instance});
             powers.push_back(glm::pi<double>() * area * emitted * (material.two_sided ? 2.0 : 1.0));
         }
     }
@@ -135,18 +136,18 @@ LightSample LightTable::sample_without_extent(const glm::vec3& receiver, const g
 
 LightSample LightTable::sample_emitter(const Emitter& emitter, double probability, const glm::vec3& receiver,
                                        glm::vec2 u) const {
-    const TracedTriangle triangle = scene_.triangle(emitter.instance, emitter.triangle);
+    const TracedTriangle& triangle = emitter.corners;
     const Material& material = scene_.material(emitter.instance);
     const glm::vec2 at = sample_triangle(u);
     const glm::vec3 position = triangle.point(at.x, at.y);
     LightSample sample = from_point(receiver, position);
-    const glm::vec3 normal = triangle.scaled_normal() / (2.0f * emitter.area);
+    const glm::vec3& normal = emitter.normal;
     const float cosine = -glm::dot(normal, sample.direction);
     if (cosine == 0.0f || (cosine < 0.0f && !material.two_sided)) return {};
     const glm::vec2 uv = triangle.uv(at.x, at.y);
     if (material.alpha_mask && !scene_.scene().is_opaque(material, uv)) return {};
     // The ray stops short of the emitter by the rounding errors of both ends.
-    const glm::vec3 error = triangle.error() + 0x1p-20f * glm::abs(receiver);
+    const glm::vec3 error = emitter.error + 0x1p-20f * glm::abs(receiver);
     const glm::vec3 side = cosine > 0.0f ? normal : -normal;
     sample.end = position + glm::dot(glm::abs(normal), error) * side;
     // From density per area to density per solid angle: d^2 / cosine; from_point left 1 / d^2 in `radiance`.

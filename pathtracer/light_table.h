@@ -53,8 +53,10 @@ public:
 
 private:
     struct Emitter {
-        std::uint32_t instance, triangle;
+        TracedTriangle corners;
+        glm::vec3 normal, error;
         float area;
+        std::uint32_t instance;
     };
 
     void find_emitters(std::vector<double>& powers);

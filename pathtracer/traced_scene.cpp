@@ -1,6 +1,7 @@
 #include "pathtracer/traced_scene.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 #include <fmt/format.h>
@@ -55,7 +56,10 @@ void check_indices(const Scene& scene) {
 }  // namespace
 
 glm::vec3 TracedTriangle::error() const {
-    return coordinate_error * glm::max(glm::abs(a), glm::max(glm::abs(b), glm::abs(c)));
+    const auto largest = [](float x, float y, float z) {
+        return std::max(std::abs(x), std::max(std::abs(y), std::abs(z)));
+    };
+    return coordinate_error * glm::vec3(largest(a.x, b.x, c.x), largest(a.y, b.y, c.y), largest(a.z, b.z, c.z));
 }
 
 TracedScene::TracedScene(const Scene& scene) : scene_(scene), parts_(scene.instances.size()) {

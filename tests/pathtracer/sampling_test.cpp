@@ -98,6 +98,15 @@ TEST(CosineHemisphere, HasItsDensityAboutAnyNormal) {
     }
 }
 
+TEST(SmallSineCosine, AgreeWithTheLibrary) {
+    for (float angle = -glm::quarter_pi<float>(); angle <= glm::quarter_pi<float>(); angle += 1e-3f) {
+        float sine, cosine;
+        small_sine_cosine(angle, sine, cosine);
+        EXPECT_NEAR(sine, std::sin(angle), 1.2e-7f);  // two units in the last place of 1
+        EXPECT_NEAR(cosine, std::cos(angle), 1.2e-7f);
+    }
+}
+
 TEST(TriangleSampling, IsUniformByArea) {
     expect_uniform_cells(
         [](glm::vec2 u) {
