@@ -5,18 +5,18 @@
 namespace plumb {
 namespace {
 
+// `i` at most one period outside, as `sample` leaves it: comparisons instead of divisions, as this runs for every hit.
 int wrapped(int i, int size, TextureWrap wrap) {
     switch (wrap) {
         case TextureWrap::clamp:
             return i < 0 ? 0 : i >= size ? size - 1 : i;
-        case TextureWrap::mirror: {
-            const int m = ((i % (2 * size)) + 2 * size) % (2 * size);
-            return m < size ? m : 2 * size - 1 - m;
-        }
+        case TextureWrap::mirror:
+            i = i < 0 ? i + 2 * size : i >= 2 * size ? i - 2 * size : i;
+            return i < size ? i : 2 * size - 1 - i;
         case TextureWrap::repeat:
             break;
     }
-    return ((i % size) + size) % size;
+    return i < 0 ? i + size : i >= size ? i - size : i;
 }
 
 }  // namespace
