@@ -160,8 +160,15 @@ vec3 emitter_irradiance(Emitter emitter, vec3 receiver, vec3 normal) {
         float irradiance = 0.0;
         if (emitter.discs != 0) {
             irradiance = disc_irradiance(a, piece.b.xyz, normal, both_sides);
-        } else if (both_sides || dot(cross(b - a, c - a), a) < 0.0) {
-            irradiance = triangle_irradiance(a, b, c, normal);
+        } else {
+            // Height of the receiver over the triangle's front. A ten-thousandth of its size: the triangle itself, or one
+            // beside it in the same plane, which float positions would see from either side at random.
+            vec3 front = cross(b - a, c - a);
+            float height = -dot(front, a);
+            if (both_sides) height = abs(height);
+            if (height * height > 1e-8 * dot(front, front) * length(front)) {
+                irradiance = height > 0.0 ? triangle_irradiance(a, b, c, normal) : 0.0;
+            }
         }
         sum += irradiance * vec3(piece.a.w, piece.b.w, piece.c.w);
     }

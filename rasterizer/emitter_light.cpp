@@ -120,7 +120,9 @@ std::vector<EmitterPiece> cluster(std::vector<EmissiveTriangle> triangles) {
             vector_area += triangle.vector_area;
             area += triangle.area(), power += triangle.power();
         }
-        pieces.push_back(piece(centre / area, vector_area, glm::vec3(0.0f), radiance / area));
+        // As long as the whole area: what a cluster's facets that face apart take from their sum would be lost power.
+        const glm::vec3 facing = vector_area / std::max(glm::length(vector_area), 1e-30f);
+        pieces.push_back(piece(centre / area, area * facing, glm::vec3(0.0f), radiance / area));
         first = next;
     }
     return pieces;

@@ -2,8 +2,8 @@
 //
 // Each instance of an emissive material is one emitter, made of pieces. Up to 64 triangles are kept as they are and lit
 // analytically (polygon_light.glsl: exact without occlusion). A finer mesh is gathered into 64 clusters of equal power,
-// of triangles that face alike and lie together; each shines like a small disc with their summed vector area:
-// good from farther away than a cluster is wide, too smooth close by.
+// of triangles that face alike and lie together; each shines like a small disc of their area and mean direction: good
+// from farther away than a cluster is wide, too smooth close by.
 // The mean of an emission texture over a triangle stands for its texels.
 //
 // Visibility is that of a few points of the emitter, whose mean over cube shadow maps multiplies all pieces.
