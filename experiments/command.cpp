@@ -1,18 +1,22 @@
 #include "experiments/command.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "experiments/build_facts.h"
-#include "experiments/config_error.h"
+#include "experiments/config.h"
 #include "experiments/exit_code.h"
 #include "frames/image_error.h"
 #include "pathtracer/reference_error.h"
 #include "rasterizer/gl_error.h"
 #include "scenes/scene_error.h"
+#include "scenes/scene_file.h"
 
 namespace plumb {
 namespace {
@@ -29,6 +33,17 @@ constexpr const char* examples = R"(Examples:
 Exit codes: 0 fine, 1 a threshold or comparison failed, 2 wrong use or bad input, 3 the environment lacks something,
 130 interrupted (what was done is kept).
 )";
+
+// CLI11 only says that a subcommand is required; a misspelt one deserves better.
+std::string unknown_command_hint(const CLI::App& app, int argc, const char* const* argv) {
+    if (argc < 2 || argv[1][0] == '-') return "";
+    std::vector<std::string> names;
+    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+        names.push_back(command->get_name());
+    const std::string name = argv[1];
+    if (std::find(names.begin(), names.end(), name) != names.end()) return "";
+    return fmt::format("no command is called '{}'; {}", name, name_hint(name, names));
+}
 
 int report(ExitCode code, const std::exception& error) {
     fmt::print(stderr, "plumbline: {}\n", error.what());
@@ -67,9 +82,10 @@ int run_command_line(int argc, const char* const* argv) {
     app.fallthrough();
 
     CommonOptions common;
-    app.add_option("--scenes-dir", common.scenes_dir, "Folder of external scenes")
-        ->envname("PLUMBLINE_SCENES")
-        ->type_name("FOLDER");
+    common.scenes_dirs = scenes_dirs_of_environment();
+    app.add_option("--scenes-dir", common.scenes_dirs, "Folder of external scenes (repeatable; else PLUMBLINE_SCENES)")
+        ->type_name("FOLDER")
+        ->allow_extra_args(false);
 
     Action action;
     add_doctor_command(app, common, action);
@@ -81,6 +97,11 @@ int run_command_line(int argc, const char* const* argv) {
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
+        const std::string hint = unknown_command_hint(app, argc, argv);
+        if (!hint.empty()) {
+            fmt::print(stderr, "plumbline: {}\n", hint);
+            return exit_wrong_use;
+        }
         return app.exit(error) == 0 ? exit_fine : exit_wrong_use;
     }
     return run_action(action);

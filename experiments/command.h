@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <vector>
 
 namespace CLI {
 class App;
@@ -13,7 +14,7 @@ namespace plumb {
 
 // Options that every subcommand understands.
 struct CommonOptions {
-    std::filesystem::path scenes_dir;  // folder of external scenes; empty: none
+    std::vector<std::filesystem::path> scenes_dirs;  // folders of external scenes
 };
 
 // Set by a subcommand whose options were given: what to run; the result is the exit code.

@@ -56,14 +56,17 @@ int run_doctor(const CommonOptions& common) {
         missing.push_back(
             "no OpenGL 4.5 context starts: apt-get install libegl1 libegl-mesa0 libgl1-mesa-dri libosmesa6");
     if (facts.embree == "does not start") missing.push_back("Embree does not start: apt-get install libembree3-3");
-    if (common.scenes_dir.empty()) {
+    if (common.scenes_dirs.empty()) {
         fmt::print(
             "\nExternal scenes: none; --scenes-dir or PLUMBLINE_SCENES names their folder (the built-in ones need "
             "none)\n");
-    } else if (!std::filesystem::is_directory(common.scenes_dir)) {
-        missing.push_back(fmt::format("scenes folder '{}' does not exist", common.scenes_dir.string()));
-    } else {
-        fmt::print("\nExternal scenes: '{}'\n", common.scenes_dir.string());
+    }
+    for (const auto& folder : common.scenes_dirs) {
+        if (std::filesystem::is_directory(folder)) {
+            fmt::print("\nExternal scenes: '{}'\n", folder.string());
+        } else {
+            missing.push_back(fmt::format("scenes folder '{}' does not exist", folder.string()));
+        }
     }
 
     if (missing.empty()) {

@@ -32,7 +32,7 @@ struct Options {
 };
 
 int render(const Options& options, const CommonOptions& common) {
-    const Scene scene = SceneFinder(common.scenes_dir).load(options.view.scene);
+    const Scene scene = SceneFinder(common.scenes_dirs).load(options.view.scene);
     const View view = options.view.make_view(scene);
     ReferenceSettings settings = options.settings;
     settings.quantities = options.view.read_quantities();

@@ -62,7 +62,7 @@ int render(const Options& options, const CommonOptions& common) {
         fmt::print("{}", print_method(method));
         return exit_fine;
     }
-    const Scene scene = SceneFinder(common.scenes_dir).load(options.view.scene);
+    const Scene scene = SceneFinder(common.scenes_dirs).load(options.view.scene);
     const View view = options.view.make_view(scene);
     Frame truth;
     if (!options.truth.empty()) truth = read_exr(options.truth);
@@ -70,10 +70,11 @@ int render(const Options& options, const CommonOptions& common) {
     const std::unique_ptr<GlContext> context = GlContext::create(options.backend);
     Pipeline pipeline(*context, scene, method, options.view.read_quantities(), view.width(), view.height());
     if (options.explain) print_decisions(pipeline);
-    RasterResult result = pipeline.render(view, nullptr, options.truth.empty() ? nullptr : &truth);
+    const Frame* given_truth = options.truth.empty() ? nullptr : &truth;
+    RasterResult result = pipeline.render(view, nullptr, given_truth);
     if (options.repetitions > 0) {
         const ExperimentTiming timing{1, options.repetitions};
-        print_timing(time_interleaved({&pipeline}, view, timing).front(), context->info());
+        print_timing(time_interleaved({&pipeline}, view, given_truth, timing).front(), context->info());
     }
     result.frame.facts["scene"] = options.view.scene;
     result.frame.facts["view"] = view.camera().name;

@@ -50,7 +50,7 @@ int run(const Options& options, const CommonOptions& common) {
 
     fmt::print("{}\n", experiment.title);
     if (!experiment.question.empty()) fmt::print("{}\n", experiment.question);
-    const RunResults results = run_experiment(experiment, SceneFinder(common.scenes_dir), run_options);
+    const RunResults results = run_experiment(experiment, SceneFinder(common.scenes_dirs), run_options);
 
     fmt::print("\n{}\n", print_results_table(results.rows));
     for (const std::string& sentence : results.summary) fmt::print("* {}\n", sentence);

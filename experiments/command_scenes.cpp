@@ -10,6 +10,7 @@
 
 #include "experiments/command.h"
 #include "experiments/exit_code.h"
+#include "experiments/progress_line.h"
 #include "experiments/scene_finder.h"
 #include "experiments/terminal_table.h"
 
@@ -43,21 +44,27 @@ std::string names_of(const auto& elements) {
 int list_scenes(const SceneFinder& finder) {
     using Align = TerminalTable::Align;
     TerminalTable table({{"scene"}, {"from"}, {"triangles", Align::right}, {"lights"}, {"views"}, {"paths"}});
-    std::vector<std::string> problems;
-    for (const FoundScene& found : finder.list()) {
+    const std::vector<FoundScene> scenes = finder.list();
+    std::vector<std::string> absent, problems;
+    ProgressLine progress;
+    for (std::size_t i = 0; i < scenes.size(); ++i) {
+        const FoundScene& found = scenes[i];
+        progress.show(static_cast<double>(i) / static_cast<double>(scenes.size()), found.name);
         try {
-            const Scene scene = finder.load(found.file.empty() ? found.name : found.file.string());
+            const Scene scene = finder.load(found.name);
             const auto lights = light_list(scene);
-            table.add_row({found.name, found.file.empty() ? "built in" : found.file.string(),
-                           fmt::format("{}", scene.triangle_count()),
+            table.add_row({found.name, found.from, fmt::format("{}", scene.triangle_count()),
                            lights.empty() ? "none" : fmt::format("{}", fmt::join(lights, ", ")),
                            names_of(scene.cameras), names_of(scene.paths)});
         } catch (const std::exception& error) {
-            problems.push_back(fmt::format("{}: {}", found.name, error.what()));
+            // A wrapper whose mesh is not here is nothing wrong: the mesh is not part of the program.
+            (found.from == "wrapper" ? absent : problems).push_back(fmt::format("{}: {}", found.name, error.what()));
         }
     }
+    progress.clear();
     fmt::print("{}", table.print());
-    for (const std::string& problem : problems) fmt::print("\ncannot be loaded: {}\n", problem);
+    if (!absent.empty()) fmt::print("\nknown, but their meshes are not here:\n  {}\n", fmt::join(absent, "\n  "));
+    if (!problems.empty()) fmt::print("\ncannot be loaded:\n  {}\n", fmt::join(problems, "\n  "));
     return problems.empty() ? exit_fine : exit_wrong_use;
 }
 
@@ -98,7 +105,7 @@ void add_scenes_command(CLI::App& app, const CommonOptions& common, Action& acti
     command->footer("Examples:\n  plumbline scenes\n  plumbline scenes cornell\n  plumbline scenes models/hall.gltf");
     command->callback([name, &common, &action] {
         action = [name, &common] {
-            const SceneFinder finder(common.scenes_dir);
+            const SceneFinder finder(common.scenes_dirs);
             return name->empty() ? list_scenes(finder) : show_scene(finder, *name);
         };
     });

@@ -4,14 +4,14 @@
 
 namespace plumb {
 
-std::vector<Timing> time_interleaved(const std::vector<Pipeline*>& pipelines, const View& view,
+std::vector<Timing> time_interleaved(const std::vector<Pipeline*>& pipelines, const View& view, const Frame* truth,
                                      const ExperimentTiming& settings) {
     for (int i = 0; i < settings.warm_up; ++i) {
-        for (Pipeline* pipeline : pipelines) pipeline->time_passes(view);
+        for (Pipeline* pipeline : pipelines) pipeline->time_passes(view, truth);
     }
     std::vector<std::vector<std::vector<PassTiming>>> frames(pipelines.size());  // [pipeline][repetition][pass]
     for (int i = 0; i < settings.repetitions; ++i) {
-        for (std::size_t j = 0; j < pipelines.size(); ++j) frames[j].push_back(pipelines[j]->time_passes(view));
+        for (std::size_t j = 0; j < pipelines.size(); ++j) frames[j].push_back(pipelines[j]->time_passes(view, truth));
     }
 
     std::vector<Timing> timings;

@@ -9,7 +9,8 @@ namespace plumb {
 
 // Times each pipeline's passes over `view`: all warm up, then take turns (A B A B ...), so that a machine that slows
 // down slows all of them. One Timing per pipeline.
-std::vector<Timing> time_interleaved(const std::vector<Pipeline*>& pipelines, const View& view,
+// `truth` feeds the stages that a method takes from it; it may be null.
+std::vector<Timing> time_interleaved(const std::vector<Pipeline*>& pipelines, const View& view, const Frame* truth,
                                      const ExperimentTiming& settings);
 
 }  // namespace plumb

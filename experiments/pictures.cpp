@@ -152,8 +152,13 @@ void write_frames(const SceneRun& run, const Experiment& experiment, const std::
             frame.facts["scene"] = scene, frame.facts["view"] = view, frame.facts["experiment"] = experiment.name;
             write_exr(folder / "frames" / fmt::format("{}.{}.exr", stem, file_name_of(name)), frame);
         };
-        write(truths.full.frame, "truth");
-        if (truths.limited) write(truths.limited->frame, "limited_truth");
+        const auto write_truth = [&](const ReferenceResult& truth, const std::string& name) {
+            Frame frame = truth.frame;
+            frame.facts["samples"] = fmt::format("{}", truth.samples);  // what `plumbline compare` looks for
+            write(std::move(frame), name);
+        };
+        write_truth(truths.full, "truth");
+        if (truths.limited) write_truth(*truths.limited, "limited_truth");
         for (const Method& method : experiment.methods) {
             Frame frame(experiment.width, experiment.height);
             for (const PlaneImage& image : run.images()) {

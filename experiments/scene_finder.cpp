@@ -8,6 +8,7 @@
 #include "experiments/config.h"
 #include "scenes/builtin.h"
 #include "scenes/scene_error.h"
+#include "scenes/scene_file.h"
 
 namespace plumb {
 namespace {
@@ -15,27 +16,29 @@ namespace {
 void add_scene_files(const std::filesystem::path& folder, std::vector<FoundScene>& found) {
     std::error_code ignored;  // a folder that cannot be read has no scenes to offer
     for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
-        if (entry.path().extension() == ".toml") found.push_back({entry.path().stem().string(), entry.path()});
+        if (entry.path().extension() == ".toml") found.push_back({entry.path().string(), "file"});
     }
 }
 
 }  // namespace
 
-SceneFinder::SceneFinder(std::filesystem::path scenes_dir) : scenes_dir_(std::move(scenes_dir)) {}
+SceneFinder::SceneFinder(std::vector<std::filesystem::path> scenes_dirs) : scenes_dirs_(std::move(scenes_dirs)) {}
 
 std::vector<FoundScene> SceneFinder::list() const {
     std::vector<FoundScene> found;
-    for (const std::string& name : builtin_scene_names()) found.push_back({name, {}});
-    if (scenes_dir_.empty()) return found;
-    if (!std::filesystem::is_directory(scenes_dir_)) {
-        throw SceneError(
-            fmt::format("scenes folder '{}' (--scenes-dir or PLUMBLINE_SCENES) does not exist", scenes_dir_.string()));
-    }
+    for (const std::string& name : builtin_scene_names()) found.push_back({name, "built in"});
+    for (const std::string& name : wrapper_scene_names()) found.push_back({name, "wrapper"});
     std::vector<FoundScene> files;
-    add_scene_files(scenes_dir_, files);
-    std::error_code ignored;
-    for (const auto& entry : std::filesystem::directory_iterator(scenes_dir_, ignored)) {
-        if (entry.is_directory(ignored)) add_scene_files(entry.path(), files);
+    for (const auto& folder : scenes_dirs_) {
+        if (!std::filesystem::is_directory(folder)) {
+            throw SceneError(
+                fmt::format("scenes folder '{}' (--scenes-dir or PLUMBLINE_SCENES) does not exist", folder.string()));
+        }
+        add_scene_files(folder, files);
+        std::error_code ignored;
+        for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
+            if (entry.is_directory(ignored)) add_scene_files(entry.path(), files);
+        }
     }
     std::ranges::sort(files, {}, &FoundScene::name);
     found.insert(found.end(), files.begin(), files.end());
@@ -43,12 +46,14 @@ std::vector<FoundScene> SceneFinder::list() const {
 }
 
 Scene SceneFinder::load(const std::string& name_or_path) const {
-    const auto builtin = builtin_scene_names();
-    if (std::ranges::find(builtin, name_or_path) != builtin.end()) return make_builtin_scene(name_or_path);
-    std::vector<std::string> names;
-    for (const FoundScene& scene : list()) names.push_back(scene.name);
-    throw SceneError(fmt::format("scene '{}': neither a file nor a scene that is known here; {}", name_or_path,
-                                 name_hint(name_or_path, names)));
+    // A word without dots and slashes is a name; a misspelt one deserves a better answer than "no such file".
+    std::vector<std::string> names = builtin_scene_names();
+    for (const std::string& name : wrapper_scene_names()) names.push_back(name);
+    const bool is_name = name_or_path.find_first_of("./") == std::string::npos;
+    if (is_name && std::ranges::find(names, name_or_path) == names.end()) {
+        throw SceneError(fmt::format("no scene is called '{}'; {}", name_or_path, name_hint(name_or_path, names)));
+    }
+    return load_scene(name_or_path, scenes_dirs_);
 }
 
 const Camera& choose_camera(const Scene& scene, const std::string& name) {

@@ -1,4 +1,4 @@
-// Scenes by name: the built-in ones, the scene files of the scenes folder, or any file's path.
+// Scenes by name: what there is to list, and how a name or path becomes a scene.
 #pragma once
 
 #include <filesystem>
@@ -10,22 +10,22 @@
 namespace plumb {
 
 struct FoundScene {
-    std::string name;
-    std::filesystem::path file;  // empty: built in
+    std::string name;  // what load() takes
+    std::string from;  // "built in", "wrapper" (the description is part of the program, its mesh is not), or "file"
 };
 
 class SceneFinder {
 public:
-    // `scenes_dir` may be empty.
-    explicit SceneFinder(std::filesystem::path scenes_dir);
+    explicit SceneFinder(std::vector<std::filesystem::path> scenes_dirs);
 
-    // Built-in scenes first, then the scene files (*.toml) in the scenes folder and in its folders, by name.
+    // Built-in scenes, wrappers, and the scene files (*.toml) in the scene folders and in their folders. Throws
+    // SceneError for a folder that does not exist.
     std::vector<FoundScene> list() const;
-    // Throws SceneError that lists the names there are.
+    // Throws SceneError.
     Scene load(const std::string& name_or_path) const;
 
 private:
-    std::filesystem::path scenes_dir_;
+    std::vector<std::filesystem::path> scenes_dirs_;
 };
 
 // The view that `name` asks for; the first one where it is empty. Throws SceneError.

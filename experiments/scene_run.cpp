@@ -150,7 +150,7 @@ void SceneRun::render_methods(const std::string& plane, RunResults& results) {
             }
         }
         try {
-            std::vector<Timing> timings = time_interleaved(rendered, camera_view, experiment_.timing);
+            std::vector<Timing> timings = time_interleaved(rendered, camera_view, &truths->second.full.frame, experiment_.timing);
             for (std::size_t i = 0; i < images.size(); ++i) {
                 images[i].timing = std::move(timings[i]);
                 images_.push_back(std::move(images[i]));
@@ -168,7 +168,8 @@ void SceneRun::render_path_tracer_curve(const std::string& plane, RunResults& re
     settings.seed ^= independent_seed_mask;
     for (const std::string& view : views_) {
         if (!truths_.contains(view)) continue;
-        if (!truths_.at(view).full.frame.has("half_a." + plane)) continue;  // a plane without noise has no curve
+        if (!truths_.at(view).full.frame.has(fmt::format("half_a.{}", plane)))
+            continue;  // a plane without noise has no curve
         for (const int samples : experiment_.path_tracer_samples) {
             if (stopped()) return;
             show(0.9, fmt::format("{}, {}: path tracer at {} samples", view, plane, samples));
