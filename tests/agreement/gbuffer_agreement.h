@@ -5,11 +5,10 @@
 
 #include "frames/frame.h"
 #include "frames/image.h"
-#include "scenes/camera.h"
 
 namespace plumb::test {
 
-// What may differ. The bounds are those that the project promises; 1e-4 of the depth is some hundred times the
+// What may differ. The bounds are those that the project promises; 1e-4 of the depth is some thousand times the
 // resolution of a 32-bit float, and leaves room for the rasterizer's interpolation over large triangles.
 struct AgreementTolerance {
     float relative_depth = 1e-4f;
@@ -18,22 +17,24 @@ struct AgreementTolerance {
 };
 
 struct AgreementCount {
-    int pixels = 0;    // compared: all but those at edges
-    int at_edges = 0;  // left out
-    int wrong_hit = 0, wrong_depth = 0, wrong_normal = 0, wrong_albedo = 0;
+    int pixels = 0;  // compared: all but those at silhouettes
     int agreeing = 0;
-    Image wrong;  // 1 where a compared pixel disagrees, 0.25 at edges
+    int silhouettes = 0;  // left out
+    int wrong_hit = 0, wrong_depth = 0, wrong_normal = 0, wrong_albedo = 0;
+    int wrong_at_coincident = 0;  // disagreeing where two surfaces lie in the same place and either answer is right
+    Image wrong;                  // 1 where a compared pixel disagrees, 0.25 at silhouettes
 
-    double fraction() const { return pixels == 0 ? 1.0 : static_cast<double>(agreeing) / pixels; }
+    double fraction() const { return static_cast<double>(agreeing) / pixels; }
+    double explained_fraction() const { return static_cast<double>(agreeing + wrong_at_coincident) / pixels; }
     std::string summary() const;
+    void add(const AgreementCount& other);  // counts only
 };
 
-// Compares layer `prefix` ("" or "layer2.") of both frames, which hold depth, normal and albedo. A pixel is at an edge
-// where, in the exact G-buffer, one of its eight neighbours differs in hit or miss, lies off its tangent plane (or it
-// off the neighbour's) by more than 0.2 % of the depth, or has a normal more than 15 degrees away: there a shift of the
-// rasterizer's vertices by its sub-pixel grid (1/256 pixel) may show another surface. Edges of the first layer are
-// edges of the second, since its separation test starts from the first.
-AgreementCount compare_gbuffers(const View& view, const Frame& rasterized, const Frame& exact,
-                                const std::string& prefix, const AgreementTolerance& tolerance = {});
+// Compares layer `prefix` ("" or "layer2.") of both frames, which hold depth, normal and albedo. `silhouettes` is 1
+// where a shift of vertices by the rasterizer's sub-pixel grid (1/256 pixel) may show another surface, `coincident`
+// where two surfaces are closer together than rounding.
+AgreementCount compare_gbuffers(const Frame& rasterized, const Frame& exact, const std::string& prefix,
+                                const Image& silhouettes, const Image& coincident,
+                                const AgreementTolerance& tolerance = {});
 
 }  // namespace plumb::test
