@@ -6,6 +6,8 @@
 #include "ambient_obscurance_counterpart.h"
 #include "gl_test.h"
 #include "rasterizer/gl_error.h"
+#include "rasterizer/pipeline.h"
+#include "scenes/builtin.h"
 #include "screen_space_run.h"
 
 namespace plumb {
@@ -26,17 +28,15 @@ Quantities ambient_visibility_within(float radius, Falloff falloff = Falloff::qu
     return {.planes = {"ao"}, .ao_radius = radius, .ao_falloff = falloff};
 }
 
-// Compares pass and counterpart pixel by pixel; returns the share of pixels that rounding leaves open.
-double expect_agreement(GlContext& context, const counterpart::Layers& given, const AmbientObscuranceSettings& settings,
-                        const Quantities& quantities) {
-    ScreenSpaceRun run(context, given, unblurred(settings), quantities);
-    const Image ao = run.render("ao", 1);
-    const int width = given.width(), height = given.height();
+// Compares image and counterpart pixel by pixel; returns the share of pixels that rounding leaves open.
+double expect_agreement(const counterpart::Layers& layers, const AmbientObscuranceSettings& settings,
+                        const Quantities& quantities, const Image& ao) {
+    const int width = layers.width(), height = layers.height();
     int ambiguous = 0, wrong = 0;
     for (int y = 0; y < height; ++y) {
         for (int x = 0; x < width; ++x) {
             const counterpart::Visibility expected =
-                counterpart::ambient_visibility(run.layers(), settings, quantities, {x, y});
+                counterpart::ambient_visibility(layers, settings, quantities, {x, y});
             ambiguous += expected.ambiguous;
             if (expected.ambiguous) continue;
             const double actual = ao.at(x, height - 1 - y);
@@ -55,6 +55,13 @@ double expect_agreement(GlContext& context, const counterpart::Layers& given, co
     }
     EXPECT_EQ(wrong, 0);
     return static_cast<double>(ambiguous) / (width * height);
+}
+
+double expect_agreement(GlContext& context, const counterpart::Layers& given, const AmbientObscuranceSettings& settings,
+                        const Quantities& quantities) {
+    ScreenSpaceRun run(context, given, unblurred(settings), quantities);
+    const Image ao = run.render("ao", 1);
+    return expect_agreement(run.layers(), settings, quantities, ao);
 }
 
 struct Case {
@@ -99,6 +106,19 @@ TEST_P(AmbientObscuranceTest, AgreesWithItsCounterpartInARoom) {
     for (const Case& c : cases) {
         SCOPED_TRACE(c.name);
         EXPECT_LT(expect_agreement(context(), layers, c.settings, ambient_visibility_within(1.0f, c.falloff)), 0.02);
+    }
+}
+
+TEST_P(AmbientObscuranceTest, AgreesWithItsCounterpartInTheCornellBoxThroughThePipeline) {
+    const Scene scene = make_cornell();
+    const View view(scene.cameras.front(), 96, 72);
+    for (const int layers : {1, 2}) {
+        const AmbientObscuranceSettings settings{.layers = layers};
+        Quantities quantities = ambient_visibility_within(0.3f);
+        quantities.planes.insert(quantities.planes.end(), planes_of_layers.begin(), planes_of_layers.end());
+        Pipeline pipeline(context(), scene, unblurred(settings), quantities, view.width(), view.height());
+        const Frame frame = pipeline.render(view).frame;
+        EXPECT_LT(expect_agreement(layers_of_frame(view, frame), settings, quantities, frame.plane("ao")), 0.02);
     }
 }
 

@@ -6,6 +6,8 @@
 #include "gl_test.h"
 #include "radiosity_counterpart.h"
 #include "rasterizer/gl_error.h"
+#include "rasterizer/pipeline.h"
+#include "scenes/builtin.h"
 #include "screen_space_run.h"
 
 namespace plumb {
@@ -23,14 +25,14 @@ Method unblurred(RadiositySettings radiosity) {
 
 const Quantities all_planes = {.planes = {"irradiance", "confidence", "indirect", "indirect.1"}};
 
-double expect_agreement(GlContext& context, const counterpart::Layers& given, const RadiositySettings& settings) {
-    ScreenSpaceRun run(context, given, unblurred(settings), all_planes);
-    const Image irradiance = run.render("irradiance", 3), confidence = run.render("confidence", 1);
-    const int width = given.width(), height = given.height();
+// Compares images and counterpart pixel by pixel; returns the share of pixels that rounding leaves open.
+double expect_agreement(const counterpart::Layers& layers, const RadiositySettings& settings, const Image& irradiance,
+                        const Image& confidence) {
+    const int width = layers.width(), height = layers.height();
     int ambiguous = 0, wrong = 0;
     for (int y = 0; y < height; ++y) {
         for (int x = 0; x < width; ++x) {
-            const counterpart::Irradiance expected = counterpart::gathered_irradiance(run.layers(), settings, {x, y});
+            const counterpart::Irradiance expected = counterpart::gathered_irradiance(layers, settings, {x, y});
             ambiguous += expected.ambiguous;
             if (expected.ambiguous) continue;
             const int row = height - 1 - y;
@@ -49,6 +51,12 @@ double expect_agreement(GlContext& context, const counterpart::Layers& given, co
     }
     EXPECT_EQ(wrong, 0);
     return static_cast<double>(ambiguous) / (width * height);
+}
+
+double expect_agreement(GlContext& context, const counterpart::Layers& given, const RadiositySettings& settings) {
+    ScreenSpaceRun run(context, given, unblurred(settings), all_planes);
+    const Image irradiance = run.render("irradiance", 3), confidence = run.render("confidence", 1);
+    return expect_agreement(run.layers(), settings, irradiance, confidence);
 }
 
 struct Case {
@@ -89,6 +97,21 @@ TEST_P(RadiosityTest, AgreesWithItsCounterpartInARoom) {
         if (!c.settings.test_tap_normal) continue;  // taps in the pixel's own plane: w.n is 0 but for rounding
         SCOPED_TRACE(c.name);
         EXPECT_LT(expect_agreement(context(), layers, c.settings), 0.05);
+    }
+}
+
+TEST_P(RadiosityTest, AgreesWithItsCounterpartInTheCornellBoxThroughThePipeline) {
+    const Scene scene = make_cornell();
+    const View view(scene.cameras.front(), 96, 72);
+    for (const int layers : {1, 2}) {
+        const RadiositySettings settings{.layers = layers, .radius = 0.5f};
+        Quantities quantities = all_planes;
+        quantities.planes.insert(quantities.planes.end(), planes_of_layers.begin(), planes_of_layers.end());
+        Pipeline pipeline(context(), scene, unblurred(settings), quantities, view.width(), view.height());
+        const Frame frame = pipeline.render(view).frame;
+        EXPECT_LT(expect_agreement(layers_of_frame(view, frame), settings, frame.plane("irradiance"),
+                                   frame.plane("confidence")),
+                  0.05);
     }
 }
 

@@ -164,4 +164,31 @@ inline View slanted_view(int width, int height) {
     return View(Camera::look_at("slanted", {1.0f, 2.0f, 3.0f}, {-2.0f, 0.5f, 1.0f}, 0.9f), width, height);
 }
 
+// What the G-buffer and direct light of a pipeline left for the screen-space passes; `frame` holds both layers' planes.
+inline counterpart::Layers layers_of_frame(const View& view, const Frame& frame) {
+    counterpart::Layers layers{view, {}, {}, {}};
+    const glm::mat3 camera_from_world(view.camera_from_world());
+    for (const std::string prefix : {"", "layer2."}) {
+        Image depth = frame.plane(prefix + "depth"), normal = frame.plane(prefix + "normal");
+        for (float& value : depth.values()) {
+            if (std::isinf(value)) value = 0.0f;
+        }
+        for (int y = 0; y < view.height(); ++y) {
+            for (int x = 0; x < view.width(); ++x) {
+                auto n = normal.pixel(x, y);
+                const glm::vec3 camera_normal = camera_from_world * glm::vec3(n[0], n[1], n[2]);
+                for (int c = 0; c < 3; ++c) n[c] = camera_normal[c];
+            }
+        }
+        layers.depth.push_back(depth);
+        layers.normal.push_back(normal);
+        layers.radiance.push_back(frame.plane(prefix + "direct"));
+    }
+    return layers;
+}
+
+// The planes that it takes.
+inline const std::vector<std::string> planes_of_layers = {"depth",        "normal",        "direct",
+                                                          "layer2.depth", "layer2.normal", "layer2.direct"};
+
 }  // namespace plumb
