@@ -99,7 +99,7 @@ TEST_P(EmitterStrategies, RectangularLightFollowsLambertsFormula) {
     const std::vector<glm::vec3> light = {
         {-0.5f, 1.2f, -0.3f}, {0.7f, 1.2f, -0.3f}, {0.7f, 1.2f, 0.4f}, {-0.5f, 1.2f, 0.4f}};
     add_quads(scene, add_material(scene, glm::vec3(0.0f), glm::vec3(4.0f), false), {light});
-    auto settings = settings_for({"direct", "position"}, 256);
+    auto settings = settings_for({"direct", "position"}, 4096);
     settings.emitter_sampling = GetParam();
     const View view = view_of({0.0f, 0.8f, 2.5f}, {0.2f, 0.0f, 0.1f}, 0.2f);
     const Frame frame = PathTracer(scene).render(view, settings).frame;
@@ -129,7 +129,7 @@ TEST_P(EmitterStrategies, ManySmallTexturedEmittersAddUp) {
         }
     }
     add_quads(scene, emitter, quads);
-    auto settings = settings_for({"direct", "position"}, 256);
+    auto settings = settings_for({"direct", "position"}, 4096);
     settings.emitter_sampling = GetParam();
     const View view = view_of({0.0f, 0.8f, 3.0f}, {0.0f, 0.0f, 0.0f}, 0.4f);
     const Frame frame = PathTracer(scene).render(view, settings).frame;

@@ -30,7 +30,7 @@ TEST_P(Furnace, EveryBounceHoldsItsTermOfTheGeometricSeries) {
     const glm::vec3 eye(transform * glm::vec4(0.1f, 0.2f, 0.3f, 1.0f)), target(transform * glm::vec4(1, 0.9f, -1, 1));
     const auto settings = settings_for({"emission", "direct", "indirect", "indirect.1", "indirect.2", "indirect.3",
                                         "indirect.4", "irradiance", "total"},
-                                       64, bounces);
+                                       256, bounces);
     const Frame frame = PathTracer(scene).render(view_of(eye, target, 1.5f), settings).frame;
 
     double sum = 0.0, power = emission;
@@ -76,7 +76,7 @@ TEST(Furnace, MoreBouncesApproachEmissionOverOneMinusAlbedo) {
 TEST(Furnace, IndirectRadiusKeepsOnlyTheNearSurfaces) {
     const Scene scene = furnace(0.5f, 1.0f, glm::mat4(1.0f));
     const View view = view_of({0, 0.5f, 0}, {0, -1, 0}, 1e-3f, 16, {0, 0, 1});
-    auto settings = settings_for({"indirect", "irradiance"}, 256, 1);
+    auto settings = settings_for({"indirect", "irradiance"}, 1024, 1);
     const PathTracer tracer(scene);
 
     settings.quantities.indirect_radius = 0.99f;

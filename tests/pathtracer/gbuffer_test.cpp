@@ -3,6 +3,7 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
 #include "pathtracer/reference_error.h"
 #include "scenes/builtin.h"
@@ -183,6 +184,20 @@ TEST(Silhouettes, AreFoundAtStepsAndFoldsButNotOnFlatGround) {
             EXPECT_EQ(edges.at(x - 1, 32), 1.0f);
         }
     }
+}
+
+// Which of two coincident surfaces a ray hits depends on the order of a tree's leaves, so the tree itself must not
+// depend on how many threads built it.
+TEST(GBuffer, CoincidentSurfacesAreToldApartAlikeHoweverManyThreadsBuildTheTree) {
+    Scene scene = make_colonnade();
+    const std::vector<Instance> instances = scene.instances;
+    scene.instances.insert(scene.instances.end(), instances.begin(), instances.end());
+    const View view(scene.cameras[0], 64, 48);
+    const auto gbuffer_built_by = [&](std::size_t threads) {
+        const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+        return PathTracer(scene).gbuffer(view);
+    };
+    expect_same_bits(gbuffer_built_by(1), gbuffer_built_by(2));
 }
 
 TEST(GBuffer, RefusesSenselessSettings) {

@@ -101,8 +101,8 @@ inline void expect_mean(const Frame& frame, const std::string& plane, const std:
                  standard_error = std::sqrt(variance_sum) / count;
     EXPECT_NEAR(mean, expected_mean, 4.0 * standard_error + 2e-5 * std::abs(expected_mean))
         << what << " plane " << plane << ", standard error " << standard_error;
-    // A test that could not see a deviation of 3 % would prove nothing.
-    EXPECT_LT(4.0 * standard_error, 0.03 * std::abs(expected_mean) + 1e-6) << what << " plane " << plane;
+    // A test that could not see a bias of 1 % would prove little.
+    EXPECT_LT(4.0 * standard_error, 0.01 * std::abs(expected_mean) + 1e-6) << what << " plane " << plane;
 }
 
 inline void expect_mean(const Frame& frame, const std::string& plane, double expected, const std::string& what = "") {
