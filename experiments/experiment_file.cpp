@@ -96,7 +96,7 @@ Experiment parse_experiment(const ConfigValue& table, const std::filesystem::pat
             reader.fail("planes", fmt::format("unknown plane '{}'; {}", plane, name_hint(plane, comparable_planes)));
         }
     }
-    const std::vector<int> size = reader.integers("resolution", {experiment.width, experiment.height}, 8, 16384);
+    const std::vector<int> size = reader.integers("resolution", {experiment.width, experiment.height}, 1, 16384);
     if (size.size() != 2) reader.fail("resolution", "must be [width, height]");
     experiment.width = size[0], experiment.height = size[1];
 

@@ -114,8 +114,6 @@ std::vector<MethodParameter> method_parameters(Method& m) {
         {"direct.shadow.map_size", &m.direct.shadow.map_size, 16, 16384},
         {"direct.shadow.emitter_size", &m.direct.shadow.emitter_size, 16, 8192},
         {"direct.shadow.emitter_samples", &m.direct.shadow.emitter_samples, 1, 64},
-        {"direct.shadow.emitter_size", &m.direct.shadow.emitter_size, 16, 8192},
-        {"direct.shadow.emitter_samples", &m.direct.shadow.emitter_samples, 1, 1024},
         {"direct.shadow.bias", &m.direct.shadow.bias, 0, 1e3},
         {"ao.enabled", &m.ao.enabled},
         {"ao.estimator", choice(m.ao.estimator, {"mara2016", "g3d_demo", "sao2012", "linear"})},

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <exception>
 #include <limits>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -18,6 +19,10 @@ namespace {
 constexpr std::uint64_t independent_seed_mask = 0x9E3779B97F4A7C15;
 
 constexpr double share_of_references = 0.7;  // of a scene's time, for the progress line only
+
+std::ptrdiff_t place_of(const std::vector<std::string>& names, const std::string& name) {
+    return std::ranges::find(names, name) - names.begin();
+}
 
 std::string refusal_of(const ReferencedError& error) {
     const std::string noise = fmt::format("not measured: the truth's noise (RMSE {:.2g}) is too near to the difference",
@@ -63,12 +68,16 @@ void SceneRun::run(RunResults& results) {
         render_methods(plane, results);
         render_path_tracer_curve(plane, results);
     }
+    const auto first = static_cast<std::ptrdiff_t>(results.rows.size());
     for (const PlaneImage& image : images_) measure(image, results);
+    std::ranges::stable_sort(results.rows.begin() + first, results.rows.end(), {}, [&](const ResultRow& row) {
+        return std::tuple(place_of(experiment_.planes, row.plane), row.truth != "full", place_of(views_, row.view),
+                          row.path_tracer_samples);
+    });
 }
 
 void SceneRun::render_truths(const std::string& view, RunResults& results) {
-    const auto place =
-        static_cast<double>(std::ranges::find(views_, view) - views_.begin()) / static_cast<double>(views_.size());
+    const auto place = static_cast<double>(place_of(views_, view)) / static_cast<double>(views_.size());
     ViewTruths truths;
     truths.full = render_reference(view, full_truth_settings(experiment_, entry_), "full", place, results);
     const auto limited = limited_truth_settings(experiment_, entry_);
@@ -150,7 +159,8 @@ void SceneRun::render_methods(const std::string& plane, RunResults& results) {
             }
         }
         try {
-            std::vector<Timing> timings = time_interleaved(rendered, camera_view, &truths->second.full.frame, experiment_.timing);
+            std::vector<Timing> timings =
+                time_interleaved(rendered, camera_view, &truths->second.full.frame, experiment_.timing);
             for (std::size_t i = 0; i < images.size(); ++i) {
                 images[i].timing = std::move(timings[i]);
                 images_.push_back(std::move(images[i]));

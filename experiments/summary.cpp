@@ -20,9 +20,14 @@ std::string truth_kind(const std::string& truth) {
     return truth.starts_with("within") ? "limited to the method's radius" : truth;
 }
 
+// Three digits that count, without an exponent where the number is large.
+std::string short_number(double value) {
+    return std::abs(value) >= 1000.0 ? fmt::format("{:.0f}", value) : fmt::format("{:.3g}", value);
+}
+
 std::string with_interval(double value, double low, double high) {
-    if (!std::isfinite(low) || !std::isfinite(high)) return fmt::format("{:.3g}", value);
-    return fmt::format("{:.3g} [{:.3g}, {:.3g}]", value, low, high);
+    if (!std::isfinite(low) || !std::isfinite(high)) return short_number(value);
+    return fmt::format("{} [{}, {}]", short_number(value), short_number(low), short_number(high));
 }
 
 std::string optional_number(double value, const char* format) {
@@ -76,7 +81,7 @@ std::string print_results_table(const std::vector<ResultRow>& rows) {
         }
         cells.push_back(row.timing.repetitions > 1
                             ? with_interval(row.timing.median, row.timing.lower_quartile, row.timing.upper_quartile)
-                            : fmt::format("{:.3g}", row.timing.median));
+                            : short_number(row.timing.median));
         table.add_row(std::move(cells));
     }
     std::string text = table.print();

@@ -24,6 +24,7 @@ const styleOf = (name) => getComputedStyle(document.documentElement).getProperty
 
 function short(value) {
   if (value === null || value === undefined) return "";
+  if (Math.abs(value) >= 1000) return Number(value).toFixed(0);
   return Number(value).toPrecision(3).replace(/e([+-])0*(\d)/, "e$1$2");
 }
 
@@ -111,7 +112,7 @@ function drawChart() {
           } },
         tooltip: { callbacks: { label: ({ raw }) => [
           `${raw.row.method}: ${raw.row.scene} / ${raw.row.view}`,
-          `RMSE ${short(raw.row.rmse)} [${short(raw.row.rmse_low)}, ${short(raw.row.rmse_high)}], ${short(raw.row.milliseconds)} ms`,
+          `RMSE ${short(raw.row.rmse)} [${short(raw.row.rmse_lower)}, ${short(raw.row.rmse_upper)}], ${short(raw.row.milliseconds)} ms`,
         ] } },
       },
     };
@@ -138,21 +139,28 @@ function drawPictures() {
   function redraw() {
     const set = data.pictures.find((candidate) => candidate.scene === scene.value && candidate.view === view.value &&
       subjectOf(candidate) === subject.value);
-    const area = document.getElementById("pictures"), legend = document.getElementById("legend");
+    const area = document.getElementById("pictures");
     area.replaceChildren();
-    legend.replaceChildren();
     if (!set) {
       area.append(element("p", { className: "note", textContent: "No pictures of this combination." }));
       return;
     }
-    for (const picture of set.images) {
+    // Upper row: truth and methods; lower row: the legend below the truth, each error below its method.
+    const upper = set.images.filter((picture) => picture.kind !== "error");
+    const lower = set.images.filter((picture) => picture.kind === "error");
+    area.style.setProperty("--columns", upper.length);
+    const figure = (picture) => {
       const title = picture.kind === "error" ? `${picture.label}: error` : picture.label;
       const caption = element("figcaption", {}, title + " ", element("span", { textContent: picture.note || "" }));
-      area.append(element("figure", {}, element("img", { src: data.files[picture.file], alt: `${title}, ${set.scene}, ${set.view}, ${subjectOf(set)}` }), caption));
-    }
+      const alt = `${title}, ${set.scene}, ${set.view}, ${subjectOf(set)}`;
+      return element("figure", {}, element("img", { src: data.files[picture.file], alt }), caption);
+    };
     const ramp = element("div", { className: "ramp" });
     ramp.style.background = `linear-gradient(to right, ${data.colour_map.join(", ")})`;
-    legend.append("error: 0", ramp, `${short(set.error_scale)} and more`, element("span", { textContent: set.exposure_note || "" }));
+    const legend = element("div", { className: "legend" }, element("div", {}, "Error, |difference| averaged over channels"), ramp,
+      element("div", { className: "ends" }, element("span", { textContent: "0" }), element("span", { textContent: `${short(set.error_scale)} and more` })),
+      element("div", { textContent: set.exposure_note || "" }));
+    area.append(...upper.map(figure), legend, ...lower.map(figure));
   }
   sceneChanged();
 }
@@ -206,10 +214,10 @@ function drawTable() {
       if (row.rmse === null) {
         line.append(element("td", { className: "unmeasured", colSpan: 4, textContent: row.refusal }));
       } else {
-        line.append(interval(row.rmse, row.rmse_low, row.rmse_high), element("td", { className: "number", textContent: short(row.psnr) }),
+        line.append(interval(row.rmse, row.rmse_lower, row.rmse_upper), element("td", { className: "number", textContent: short(row.psnr) }),
           element("td", { className: "number", textContent: short(row.ssim) }), element("td", { className: "number", textContent: short(row.noise) }));
       }
-      line.append(interval(row.milliseconds, row.milliseconds_low, row.milliseconds_high));
+      line.append(interval(row.milliseconds, row.milliseconds_lower, row.milliseconds_upper));
       return line;
     }));
   }

@@ -1,0 +1,92 @@
+#include "experiments/experiment_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/experiments/errors.h"
+
+namespace plumb {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+const std::string valid = R"(planes = ["ao"]
+methods = ["one_layer", {name = "mine", base = "two_layers", ao.samples = 6}]
+[[scenes]]
+scene = "cornell"
+ao_radius = 0.2
+)";
+
+Experiment parse(const std::string& text) { return parse_experiment(parse_config(text, "e.toml"), "e.toml"); }
+
+std::string parse_failure(const std::string& text) {
+    return message_of<ConfigError>([&] { parse(text); });
+}
+
+TEST(ExperimentFile, ReadsScenesMethodsAndDefaults) {
+    const Experiment experiment = parse(valid);
+    ASSERT_EQ(experiment.scenes.size(), 1u);
+    EXPECT_EQ(experiment.scenes[0].scene, "cornell");
+    EXPECT_FLOAT_EQ(experiment.scenes[0].ao_radius, 0.2f);
+    ASSERT_EQ(experiment.methods.size(), 2u);
+    EXPECT_EQ(experiment.methods[1].ao.samples, 6);
+    EXPECT_EQ(experiment.baseline, "one_layer");
+    EXPECT_EQ(experiment.name, "e");
+}
+
+TEST(ExperimentFile, TheShippedExperimentIsValid) {
+    const Experiment experiment = load_experiment(PLUMBLINE_SOURCE_DIR "/experiments/one_vs_two_layers.toml");
+    EXPECT_THAT(experiment.planes, testing::ElementsAre("ao", "indirect", "total"));
+    EXPECT_EQ(experiment.scenes.size(), 3u);
+    EXPECT_EQ(experiment.methods.size(), 2u);
+}
+
+TEST(ExperimentFile, MistakesAreReportedWithTheirLine) {
+    EXPECT_THAT(parse_failure("plane = [\"ao\"]\n" + valid),
+                AllOf(HasSubstr("e.toml:1: plane"), HasSubstr("did you mean 'planes'?")));
+    EXPECT_THAT(parse_failure(valid + "ao_raduis = 0.1\n"),
+                AllOf(HasSubstr("e.toml:6"), HasSubstr("did you mean 'ao_radius'?")));
+    EXPECT_THAT(parse_failure(valid + "method.ao.bais = 0.1\n"),
+                AllOf(HasSubstr("e.toml:6: ao.bais"), HasSubstr("'ao.bias'")));
+    EXPECT_THAT(parse_failure(valid + "[reference]\nsamples = 33\n"),
+                AllOf(HasSubstr("e.toml:7: reference.samples"), HasSubstr("even")));
+    EXPECT_THAT(parse_failure("resolution = [1, 2, 3]\n" + valid), HasSubstr("[width, height]"));
+    EXPECT_THAT(parse_failure("baseline = \"mien\"\n" + valid),
+                AllOf(HasSubstr("e.toml:1: baseline"), HasSubstr("did you mean 'mine'?")));
+}
+
+TEST(ExperimentFile, AnUnknownPlaneIsAnErrorThatNamesTheNearest) {
+    std::string text = valid;
+    text.replace(text.find("ao"), 2, "indirekt");
+    EXPECT_THAT(parse_failure(text), AllOf(HasSubstr("e.toml:1: planes"), HasSubstr("did you mean 'indirect'?")));
+}
+
+TEST(ExperimentFile, MissingPartsAreNamed) {
+    EXPECT_THAT(parse_failure("methods = [\"one_layer\"]"), HasSubstr("'scenes' is missing"));
+    EXPECT_THAT(parse_failure("[[scenes]]\nscene = \"cornell\""), HasSubstr("'methods' is missing"));
+    EXPECT_THAT(parse_failure("methods = [\"one_layer\"]\n[[scenes]]\nviews = []"),
+                AllOf(HasSubstr("e.toml:2"), HasSubstr("'scene' is missing")));
+}
+
+TEST(ExperimentFile, ASceneGivesItsRadiusSeparationAndOverridesToEveryMethod) {
+    const Experiment experiment =
+        parse(valid + "indirect_radius = 0.4\nminimum_separation = 0.03\nmethod.ao.bias = 0.001\n");
+    const Method two = method_in_scene(experiment.methods[1], experiment.scenes[0], "e.toml");
+    EXPECT_FLOAT_EQ(two.radiosity.radius, 0.4f);
+    EXPECT_FLOAT_EQ(two.gbuffer.minimum_separation, 0.03f);
+    EXPECT_FLOAT_EQ(two.ao.bias, 0.001f);
+    EXPECT_EQ(two.ao.samples, 6);
+}
+
+TEST(ExperimentFile, TheQuickVariantAsksTheSameQuestionOfLess) {
+    Experiment experiment = parse(valid);
+    make_quick(experiment);
+    EXPECT_LE(experiment.width, 480 / 4);
+    EXPECT_LE(experiment.reference.samples, 64);
+    EXPECT_TRUE(experiment.quick);
+    EXPECT_EQ(experiment.methods.size(), 2u);
+}
+
+}  // namespace
+}  // namespace plumb

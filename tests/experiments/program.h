@@ -1,0 +1,19 @@
+// The built command `plumbline`, run as a user would.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace plumb {
+
+struct ProgramRun {
+    int exit_code = -1;
+    std::string output;  // standard output and standard error together
+};
+
+// Runs a shell command line.
+ProgramRun run_shell(const std::string& command);
+// Runs plumbline with arguments, which may hold spaces.
+ProgramRun run_plumbline(const std::vector<std::string>& arguments);
+
+}  // namespace plumb
