@@ -21,7 +21,7 @@ namespace {
 
 constexpr const char* examples = R"(Examples:
   plumbline reference cornell --samples 1024
-  plumbline reference colonnade --view nave --target-error 0.01 --planes ao,indirect,total
+  plumbline reference colonnade --view court --target-error 0.01 --planes ao,indirect,total
   plumbline reference sponza.toml --seed 7 --threads 4 --output out/sponza
 Ctrl-C leaves a checkpoint beside the files; the same command resumes it.)";
 
