@@ -80,7 +80,8 @@ TEST(Furnace, IndirectRadiusKeepsOnlyTheNearSurfaces) {
     const PathTracer tracer(scene);
 
     settings.quantities.indirect_radius = 0.99f;
-    for (const float value : tracer.render(view, settings).frame.plane("indirect").values()) EXPECT_EQ(value, 0.0f);
+    const Frame nothing = tracer.render(view, settings).frame;
+    for (const float value : nothing.plane("indirect").values()) EXPECT_EQ(value, 0.0f);
 
     settings.quantities.indirect_radius = 1.3f;
     const double c = 1.0 / 1.3;
