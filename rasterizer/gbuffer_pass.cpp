@@ -22,6 +22,7 @@ std::string layer_name(const char* plane, int layer) {
 
 std::vector<std::string> outputs(int layer) {
     std::vector<std::string> names;
+    names.reserve(plane_formats.size());
     for (const auto& [plane, format] : plane_formats) names.push_back(layer_name(plane, layer));
     return names;
 }
