@@ -50,6 +50,11 @@ void SceneRun::show(double fraction, const std::string& text) {
                            fmt::format("{}: {}", entry_.scene, text));
 }
 
+double SceneRun::measuring_progress(const std::string& plane, double done) const {
+    const double planes = static_cast<double>(experiment_.planes.size());
+    return std::lerp(share_of_references, 1.0, (static_cast<double>(place_of(experiment_.planes, plane)) + done) / planes);
+}
+
 View SceneRun::view_of(const std::string& name) const {
     return View(scene_.camera(name), experiment_.width, experiment_.height);
 }
@@ -141,7 +146,7 @@ void SceneRun::render_methods(const std::string& plane, RunResults& results) {
     for (const std::string& view : views_) {
         const auto truths = truths_.find(view);
         if (stopped() || truths == truths_.end()) continue;
-        show(share_of_references, fmt::format("{}, {}: methods", view, plane));
+        show(measuring_progress(plane, 0.0), fmt::format("{}, {}: methods", view, plane));
         const View camera_view = view_of(view);
         std::vector<PlaneImage> images;
         std::vector<Pipeline*> rendered;
@@ -182,7 +187,7 @@ void SceneRun::render_path_tracer_curve(const std::string& plane, RunResults& re
             continue;  // a plane without noise has no curve
         for (const int samples : experiment_.path_tracer_samples) {
             if (stopped()) return;
-            show(0.9, fmt::format("{}, {}: path tracer at {} samples", view, plane, samples));
+            show(measuring_progress(plane, 0.5), fmt::format("{}, {}: path tracer at {} samples", view, plane, samples));
             settings.samples = samples;
             try {
                 ReferenceControl control;

@@ -49,6 +49,7 @@ public:
 private:
     bool stopped() const { return control_.stop && control_.stop->load(); }
     void show(double fraction, const std::string& text);
+    double measuring_progress(const std::string& plane, double done) const;
     View view_of(const std::string& name) const;
     void render_truths(const std::string& view, RunResults& results);
     ReferenceResult render_reference(const std::string& view, const ReferenceSettings& settings,
