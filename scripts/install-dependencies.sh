@@ -8,7 +8,7 @@ packages=(
     # tools
     g++ cmake ninja-build ccache pkg-config python3 python3-glad git ca-certificates
     # rendering
-    libembree-dev libtbb-dev libosmesa6-dev libegl-dev libgl-dev libegl1 libegl-mesa0 libgl1-mesa-dri libglm-dev
+    libembree-dev libtbb-dev libosmesa6-dev libegl-dev libgl-dev libopengl-dev libegl1 libegl-mesa0 libgl1-mesa-dri libglm-dev
     # files
     libopenimageio-dev openimageio-tools libopenexr-dev libassimp-dev libtomlplusplus-dev nlohmann-json3-dev
     # program
