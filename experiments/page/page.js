@@ -62,24 +62,39 @@ function drawChart() {
     return;
   }
   const controls = document.getElementById("chart-controls");
-  const all = "all scenes and views";
-  const places = [all, ...distinct(measured.map((row) => `${row.scene} / ${row.view}`))];
+  const mean = "mean of all views", all = "all views apart";
+  const placeOf = (row) => `${row.scene} / ${row.view}`;
+  const places = [mean, all, ...distinct(measured.map(placeOf))];
   const subject = select(controls, "Plane", distinct(measured.map(subjectOf)), redraw);
   const place = select(controls, "View", places, redraw);
   const methods = distinct(data.rows.filter((row) => !row.path_tracer_samples).map((row) => row.method));
   let chart = null;
 
+  // One row per method: geometric means over the views in which each of them was measured.
+  function meanRows(rows) {
+    const names = distinct(rows.map((row) => row.method));
+    const complete = distinct(rows.map(placeOf)).filter((where) =>
+      names.every((name) => rows.some((row) => row.method === name && placeOf(row) === where && row.rmse > 0)));
+    const geometric = (values) => Math.exp(values.reduce((sum, value) => sum + Math.log(value), 0) / values.length);
+    return complete.length === 0 ? [] : names.map((name) => {
+      const of = rows.filter((row) => row.method === name && complete.includes(placeOf(row)));
+      return { ...of[0], scene: "geometric mean", view: `${complete.length} views`, rmse: geometric(of.map((row) => row.rmse)),
+        milliseconds: geometric(of.map((row) => row.milliseconds)), rmse_lower: null, rmse_upper: null };
+    });
+  }
+
   function datasets() {
-    const rows = measured.filter((row) => subjectOf(row) === subject.value &&
-      (place.value === all || `${row.scene} / ${row.view}` === place.value));
+    let rows = measured.filter((row) => subjectOf(row) === subject.value &&
+      (place.value === all || place.value === mean || placeOf(row) === place.value));
+    if (place.value === mean) rows = meanRows(rows);
     const point = (row) => ({ x: row.milliseconds, y: row.rmse, row });
     const sets = methods.map((method, index) => ({
       label: method, data: rows.filter((row) => row.method === method && !row.path_tracer_samples).map(point),
       backgroundColor: methodColours[index % methodColours.length], borderColor: methodColours[index % methodColours.length],
       pointStyle: ["circle", "rect", "triangle", "rectRot", "star", "cross"][index % 6], pointRadius: 6, pointHoverRadius: 8,
     }));
-    for (const where of distinct(rows.map((row) => `${row.scene} / ${row.view}`))) {
-      const curve = rows.filter((row) => row.path_tracer_samples && `${row.scene} / ${row.view}` === where);
+    for (const where of distinct(rows.map(placeOf))) {
+      const curve = rows.filter((row) => row.path_tracer_samples && placeOf(row) === where);
       if (curve.length === 0) continue;
       curve.sort((a, b) => a.path_tracer_samples - b.path_tracer_samples);
       sets.push({
@@ -112,7 +127,7 @@ function drawChart() {
           } },
         tooltip: { callbacks: { label: ({ raw }) => [
           `${raw.row.method}: ${raw.row.scene} / ${raw.row.view}`,
-          `RMSE ${short(raw.row.rmse)} [${short(raw.row.rmse_lower)}, ${short(raw.row.rmse_upper)}], ${short(raw.row.milliseconds)} ms`,
+          `RMSE ${short(raw.row.rmse)}${raw.row.rmse_lower === null ? "" : ` [${short(raw.row.rmse_lower)}, ${short(raw.row.rmse_upper)}]`}, ${short(raw.row.milliseconds)} ms`,
         ] } },
       },
     };
