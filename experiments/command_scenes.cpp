@@ -36,9 +36,9 @@ std::vector<std::string> light_list(const Scene& scene) {
 }
 
 std::string names_of(const auto& elements) {
-    std::vector<std::string> names;
-    for (const auto& element : elements) names.push_back(element.name);
-    return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
+    std::string names;
+    for (const auto& element : elements) names.append(names.empty() ? "" : ", ").append(element.name);
+    return names.empty() ? "none" : names;
 }
 
 int list_scenes(const SceneFinder& finder) {

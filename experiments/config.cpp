@@ -16,10 +16,10 @@ ConfigValue convert(const toml::node& node, const std::string& source) {
     result.line = static_cast<int>(node.source().begin.line);
     if (const auto* table = node.as_table()) {
         ConfigMembers members;
-        for (const auto& [key, value] : *table) members.emplace_back(std::string(key.str()), convert(value, source));
+        for (const auto& [key, value] : *table) members.push_back({std::string(key.str()), convert(value, source)});
         // toml++ sorts by name; the file's order is the one that a reader of results expects.
-        std::ranges::stable_sort(members, {}, [](const auto& member) { return member.second.line; });
-        if (result.line == 0 && !members.empty()) result.line = members.front().second.line;
+        std::ranges::stable_sort(members, {}, [](const auto& member) { return member.value.line; });
+        if (result.line == 0 && !members.empty()) result.line = members.front().value.line;
         result.value = std::move(members);
     } else if (const auto* array = node.as_array()) {
         ConfigArray values;
@@ -111,8 +111,8 @@ ConfigReader::ConfigReader(const ConfigValue& table, std::string source, std::st
 }
 
 const ConfigValue* ConfigReader::find(std::string_view key) const {
-    const auto found = std::ranges::find_if(*members_, [&](const auto& member) { return member.first == key; });
-    return found == members_->end() ? nullptr : &found->second;
+    const auto found = std::ranges::find_if(*members_, [&](const auto& member) { return member.key == key; });
+    return found == members_->end() ? nullptr : &found->value;
 }
 
 bool ConfigReader::has(std::string_view key) const { return find(key) != nullptr; }

@@ -8,7 +8,6 @@
 #include <set>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <variant>
 #include <vector>
 
@@ -17,8 +16,9 @@
 namespace plumb {
 
 struct ConfigValue;
+struct ConfigMember;
 using ConfigArray = std::vector<ConfigValue>;
-using ConfigMembers = std::vector<std::pair<std::string, ConfigValue>>;  // in the file's order
+using ConfigMembers = std::vector<ConfigMember>;  // in the file's order
 
 // One value of a file, with the place where it stands.
 struct ConfigValue {
@@ -26,6 +26,11 @@ struct ConfigValue {
     int line = 0;
 
     std::string_view type_name() const;
+};
+
+struct ConfigMember {
+    std::string key;
+    ConfigValue value;
 };
 
 // `source` is what errors call the text. Throws ConfigError with the line where the text is not TOML.

@@ -223,7 +223,7 @@ void set_method_parameter(Method& method, const std::string& assignment) {
     if (word) value = fmt::format("\"{}\"", value);
     const std::string source = fmt::format("'{}'", assignment);
     const ConfigValue parsed = parse_config("value = " + value, source);
-    store_leaf(method, name, std::get<ConfigMembers>(parsed.value).front().second, source);
+    store_leaf(method, name, std::get<ConfigMembers>(parsed.value).front().value, source);
     const std::string reason = reason_without_effect(method, name);
     if (!reason.empty()) throw ConfigError(fmt::format("{}: has no effect, because {}", source, reason));
 }
@@ -251,9 +251,8 @@ std::string reason_without_effect(const Method& method, std::string_view name) {
         const bool off = name.starts_with(group) && name != fmt::format("{}radius", group) && blur.radius == 0;
         return off ? fmt::format("{}radius = 0", group) : std::string();
     };
-    if (const std::string reason = blur_reason("ao.blur.", method.ao.blur); !reason.empty()) return reason;
-    if (const std::string reason = blur_reason("radiosity.blur.", method.radiosity.blur); !reason.empty())
-        return reason;
+    if (std::string reason = blur_reason("ao.blur.", method.ao.blur); !reason.empty()) return reason;
+    if (std::string reason = blur_reason("radiosity.blur.", method.radiosity.blur); !reason.empty()) return reason;
     if (!method.ao.use_mip_chain && name == "ao.mip_offset") return "ao.use_mip_chain = false";
     if (!method.radiosity.use_mip_chain && (name == "radiosity.mip_offset" || name == "radiosity.minimum_mip_level")) {
         return "radiosity.use_mip_chain = false";

@@ -28,6 +28,7 @@ std::vector<Timing> time_interleaved(const std::vector<Pipeline*>& pipelines, co
         timing.lower_quartile = quantile(sums, 0.25), timing.upper_quartile = quantile(sums, 0.75);
         for (std::size_t pass = 0; pass < repetitions.front().size(); ++pass) {
             std::vector<double> times;
+            times.reserve(repetitions.size());
             for (const auto& passes : repetitions) times.push_back(passes[pass].milliseconds);
             timing.passes.push_back({repetitions.front()[pass].pass, quantile(times, 0.5)});
         }

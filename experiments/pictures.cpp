@@ -146,7 +146,9 @@ void write_pictures(const SceneRun& run, const Experiment& experiment, const std
 
 void write_frames(const SceneRun& run, const Experiment& experiment, const std::string& scene,
                   const std::filesystem::path& folder) {
-    for (const auto& [view, truths] : run.truths()) {
+    for (const auto& entry : run.truths()) {
+        const std::string& view = entry.first;
+        const ViewTruths& truths = entry.second;
         const std::string stem = fmt::format("{}.{}", file_name_of(scene), file_name_of(view));
         const auto write = [&](Frame frame, const std::string& name) {
             frame.facts["scene"] = scene, frame.facts["view"] = view, frame.facts["experiment"] = experiment.name;

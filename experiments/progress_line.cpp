@@ -1,6 +1,7 @@
 #include "experiments/progress_line.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include <fmt/format.h>
@@ -24,7 +25,7 @@ void ProgressLine::show(double fraction, const std::string& text) {
         fmt::print(stderr, "{:3.0f} %  {}\n", 100.0 * fraction, text);
     } else {
         constexpr int width = 24;
-        const int filled = static_cast<int>(fraction * width + 0.5);
+        const int filled = static_cast<int>(std::lround(fraction * width));
         fmt::print(stderr, "\r\x1b[K[{:#<{}}{: <{}}] {:3.0f} %  {}", "", filled, "", width - filled, 100.0 * fraction,
                    text);
         shown_ = true;

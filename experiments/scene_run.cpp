@@ -52,7 +52,8 @@ void SceneRun::show(double fraction, const std::string& text) {
 
 double SceneRun::measuring_progress(const std::string& plane, double done) const {
     const double planes = static_cast<double>(experiment_.planes.size());
-    return std::lerp(share_of_references, 1.0, (static_cast<double>(place_of(experiment_.planes, plane)) + done) / planes);
+    return std::lerp(share_of_references, 1.0,
+                     (static_cast<double>(place_of(experiment_.planes, plane)) + done) / planes);
 }
 
 View SceneRun::view_of(const std::string& name) const {
@@ -187,7 +188,8 @@ void SceneRun::render_path_tracer_curve(const std::string& plane, RunResults& re
             continue;  // a plane without noise has no curve
         for (const int samples : experiment_.path_tracer_samples) {
             if (stopped()) return;
-            show(measuring_progress(plane, 0.5), fmt::format("{}, {}: path tracer at {} samples", view, plane, samples));
+            show(measuring_progress(plane, 0.5),
+                 fmt::format("{}, {}: path tracer at {} samples", view, plane, samples));
             settings.samples = samples;
             try {
                 ReferenceControl control;

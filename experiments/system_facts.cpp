@@ -42,7 +42,7 @@ std::string describe_embree() {
     const char* instructions = property(RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED)  ? "AVX-512"
                                : property(RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) ? "AVX or AVX2"
                                                                                      : "SSE";
-    const std::string text = fmt::format("{}.{}.{}, {}", property(RTC_DEVICE_PROPERTY_VERSION_MAJOR),
+    std::string text = fmt::format("{}.{}.{}, {}", property(RTC_DEVICE_PROPERTY_VERSION_MAJOR),
                                          property(RTC_DEVICE_PROPERTY_VERSION_MINOR),
                                          property(RTC_DEVICE_PROPERTY_VERSION_PATCH), instructions);
     rtcReleaseDevice(device);
