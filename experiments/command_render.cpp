@@ -16,6 +16,7 @@
 #include "experiments/view_options.h"
 #include "frames/exr.h"
 #include "rasterizer/pipeline.h"
+#include "scenes/effects.h"
 
 namespace plumb {
 namespace {
@@ -35,6 +36,14 @@ struct Options {
     int repetitions = 5;
     bool explain = false, print_method = false;
 };
+
+void print_effects(const EffectPlan& plan) {
+    TerminalTable table({{"effect"}, {"scene"}, {"why"}});
+    for (const Effect& effect : plan.effects) {
+        table.add_row({to_string(effect.kind), effect.on ? "on" : "off", effect.reason});
+    }
+    fmt::print("{}\n", table.print());
+}
 
 void print_decisions(const Pipeline& pipeline) {
     TerminalTable table({{"pass"}, {"runs"}, {"why"}});
@@ -69,7 +78,10 @@ int render(const Options& options, const CommonOptions& common) {
 
     const std::unique_ptr<GlContext> context = GlContext::create(options.backend);
     Pipeline pipeline(*context, scene, method, options.view.read_quantities(), view.width(), view.height());
-    if (options.explain) print_decisions(pipeline);
+    if (options.explain) {
+        print_effects(plan_effects(scene));
+        print_decisions(pipeline);
+    }
     const Frame* given_truth = options.truth.empty() ? nullptr : &truth;
     RasterResult result = pipeline.render(view, nullptr, given_truth);
     if (options.repetitions > 0) {
@@ -102,7 +114,7 @@ void add_render_command(CLI::App& app, const CommonOptions& common, Action& acti
         ->group(group)
         ->type_name("FILE");
     command->add_flag("--print-method", options->print_method, "Print the method as TOML and stop")->group(group);
-    command->add_flag("--explain", options->explain, "Print each pass, whether it runs, and why");
+    command->add_flag("--explain", options->explain, "Print each effect and pass, on or off, and why");
     command->add_option("--repetitions", options->repetitions, "Frames to time; 0: none")
         ->check(CLI::Range(0, 100000))
         ->capture_default_str();
