@@ -43,8 +43,8 @@ std::string describe_embree() {
                                : property(RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED) ? "AVX or AVX2"
                                                                                      : "SSE";
     std::string text = fmt::format("{}.{}.{}, {}", property(RTC_DEVICE_PROPERTY_VERSION_MAJOR),
-                                         property(RTC_DEVICE_PROPERTY_VERSION_MINOR),
-                                         property(RTC_DEVICE_PROPERTY_VERSION_PATCH), instructions);
+                                   property(RTC_DEVICE_PROPERTY_VERSION_MINOR),
+                                   property(RTC_DEVICE_PROPERTY_VERSION_PATCH), instructions);
     rtcReleaseDevice(device);
     return text;
 }
