@@ -12,5 +12,5 @@ for tool in clang-format clang-tidy; do
 done
 [[ -f build/release/compile_commands.json ]] || { echo "lint: no build/release; run scripts/build.sh first" >&2; exit 3; }
 
-git ls-files -z "${rooms[@]/%//*.h}" "${rooms[@]/%//*.cpp}" | xargs -0 clang-format --dry-run -Werror
-git ls-files -z "${rooms[@]/%//*.cpp}" | xargs -0 -n 1 -P "$(nproc)" clang-tidy --quiet -p build/release
+git ls-files --error-unmatch -z "${rooms[@]/%//*.h}" "${rooms[@]/%//*.cpp}" | xargs -0 clang-format --dry-run -Werror
+git ls-files --error-unmatch -z "${rooms[@]/%//*.cpp}" | xargs -0 -n 1 -P "$(nproc)" clang-tidy --quiet -p build/release
