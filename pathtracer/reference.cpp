@@ -304,14 +304,15 @@ ReferenceResult ReferenceRun::run(const ReferenceControl& control) {
         seconds_per_sample = seconds_since(pass_start) / count;
         state_.seconds = seconds_before + seconds_since(start);
 
+        // Told before the question whether to stop, so that whoever watches can stop the run after this very pass.
+        if (control.on_progress) {
+            control.on_progress({state_.samples, settings_.samples, worst_error(),
+                                 static_cast<double>(state_.rays) / std::max(state_.seconds, 1e-9), state_.seconds});
+        }
         stopped = control.stop && control.stop->load() && state_.samples < settings_.samples;
         if (!control.checkpoint.empty() && (stopped || seconds_since(last_checkpoint) > checkpoint_seconds)) {
             write_checkpoint(control.checkpoint, key, state_, accumulation_.values());
             last_checkpoint = Clock::now();
-        }
-        if (control.on_progress) {
-            control.on_progress({state_.samples, settings_.samples, worst_error(),
-                                 static_cast<double>(state_.rays) / std::max(state_.seconds, 1e-9), state_.seconds});
         }
     }
     state_.seconds = seconds_before + seconds_since(start);
