@@ -31,13 +31,6 @@ inline void embree_occluded(RTCScene scene, RTCRay& ray, RayCoherence coherence)
     rtcOccluded1(scene, &ray, &arguments);
 }
 
-inline void embree_occluded16(const int* valid, RTCScene scene, RTCRay16& rays, RayCoherence coherence) {
-    RTCOccludedArguments arguments;
-    rtcInitOccludedArguments(&arguments);
-    arguments.flags = embree_flags(coherence);
-    rtcOccluded16(valid, scene, &rays, &arguments);
-}
-
 #else
 
 inline RTCIntersectContext embree_context(RayCoherence coherence) {
@@ -56,11 +49,6 @@ inline void embree_intersect(RTCScene scene, RTCRayHit& ray, RayCoherence cohere
 inline void embree_occluded(RTCScene scene, RTCRay& ray, RayCoherence coherence) {
     RTCIntersectContext context = embree_context(coherence);
     rtcOccluded1(scene, &context, &ray);
-}
-
-inline void embree_occluded16(const int* valid, RTCScene scene, RTCRay16& rays, RayCoherence coherence) {
-    RTCIntersectContext context = embree_context(coherence);
-    rtcOccluded16(valid, scene, &context, &rays);
 }
 
 #endif
