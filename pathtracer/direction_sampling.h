@@ -47,6 +47,26 @@ inline glm::vec3 sample_cosine_hemisphere(const glm::vec3& normal, glm::vec2 u) 
     return disc.x * tangent + disc.y * bitangent + height * normal;
 }
 
+// 1 - cos(angle), without the digits that the subtraction loses for small angles: the height of a cap of directions,
+// which covers 2 pi times as many steradians.
+inline float cap_height(float angle) {
+    const float sine = std::sin(0.5f * angle);
+    return 2.0f * sine * sine;
+}
+
+// A direction within the cone about unit `axis` whose cap has this height, uniform per solid angle.
+inline glm::vec3 sample_cone(const glm::vec3& axis, float height, glm::vec2 u) {
+    glm::vec3 tangent, bitangent;
+    complete_basis(axis, tangent, bitangent);
+    const glm::vec2 disc = sample_disc(u);
+    const float below_pole = glm::dot(disc, disc) * height;
+    const glm::vec2 across = disc * std::sqrt(std::max(0.0f, height * (2.0f - below_pole)));
+    return across.x * tangent + across.y * bitangent + (1.0f - below_pole) * axis;
+}
+
+// The density of its samples within the cone.
+inline float cone_density(float height) { return glm::one_over_two_pi<float>() / height; }
+
 // Barycentric weights of the second and third corner, uniform over a triangle.
 //   Source: Heitz 2019, "A Low-Distortion Map Between Triangle and Square".
 inline glm::vec2 sample_triangle(glm::vec2 u) {
