@@ -43,6 +43,13 @@ View::View(const Camera& camera, int width, int height) : camera_(camera), width
         throw SceneError(fmt::format("camera '{}': vertical field of view {} rad must lie between 0 and 3.1",
                                      camera.name, camera.vertical_fov));
     }
+    const bool has_lens = camera.aperture_radius >= 0.0f && std::isfinite(camera.aperture_radius) &&
+                          camera.focus_distance > 0.0f && std::isfinite(camera.focus_distance);
+    if (!has_lens) {
+        throw SceneError(
+            fmt::format("camera '{}': aperture radius {} must be 0 or positive and focus distance {} positive (metres)",
+                        camera.name, camera.aperture_radius, camera.focus_distance));
+    }
     tan_half_height_ = std::tan(0.5f * camera.vertical_fov);
     tan_half_width_ = tan_half_height_ * static_cast<float>(width) / static_cast<float>(height);
     camera_from_world_ = glm::inverse(camera.world_from_camera);
@@ -66,6 +73,14 @@ glm::vec3 View::camera_space_point(float x, float y, float depth) const {
 Ray View::pixel_ray(float x, float y) const {
     const glm::vec3 direction = glm::mat3(camera_.world_from_camera) * camera_space_point(x, y, 1.0f);
     return {camera_.position(), glm::normalize(direction)};
+}
+
+Ray View::lens_ray(float x, float y, const glm::vec2& lens) const {
+    if (camera_.aperture_radius == 0.0f) return pixel_ray(x, y);
+    const glm::vec3 on_lens(camera_.aperture_radius * lens, 0.0f);
+    const glm::vec3 in_focus = camera_space_point(x, y, camera_.focus_distance);
+    return {glm::vec3(camera_.world_from_camera * glm::vec4(on_lens, 1.0f)),
+            glm::normalize(glm::mat3(camera_.world_from_camera) * (in_focus - on_lens))};
 }
 
 glm::vec3 View::project(const glm::vec3& world) const {

@@ -22,6 +22,8 @@ struct Camera {
     float vertical_fov = 0.8726646f;    // radians (50 degrees)
     float near_plane = 0.1f;            // metres; what the rasterizer clips, and the path tracer as well
     float far_plane = 200.0f;           // metres
+    float aperture_radius = 0.0f;       // metres, of a thin lens about the camera's position; 0: a pinhole
+    float focus_distance = 1.0f;        // metres along -Z: what lies there is sharp
 
     // A camera at `eye` that looks at `target`, upright with respect to `up`. Throws SceneError where eye and target
     // coincide or the view direction is parallel to `up`.
@@ -33,7 +35,7 @@ struct Camera {
 // A camera seen at a resolution, optionally widened by a guard band on each side.
 class View {
 public:
-    // Throws SceneError unless the sizes are positive and 0 < near < far.
+    // Throws SceneError unless the sizes are positive, 0 < near < far, and the lens is one.
     View(const Camera& camera, int width, int height);
 
     // The same view with `pixels` more on each side; pixel (i, j) of this view is pixel (i + pixels, j + pixels) of it.
@@ -46,6 +48,9 @@ public:
 
     // The ray through continuous pixel coordinates, from the camera's position (not from the near plane).
     Ray pixel_ray(float x, float y) const;
+    // The ray through a point of the lens, given as a point of the unit disc: the rays through one (x, y) all meet at
+    // depth focus_distance. Exactly pixel_ray() for a pinhole.
+    Ray lens_ray(float x, float y, const glm::vec2& lens) const;
     // The point at `depth` metres along the camera's -Z, seen through (x, y), in camera space.
     glm::vec3 camera_space_point(float x, float y, float depth) const;
     // Continuous pixel coordinates (x, y) and the depth (metres along -Z) of a world point. For a depth <= 0 the point

@@ -37,6 +37,28 @@ private:
     std::unique_ptr<XXH3_state_t, decltype(&XXH3_freeState)> state_;
 };
 
+void add(Hasher& hasher, const Attenuation& attenuation) {
+    hasher.add(attenuation.constant);
+    hasher.add(attenuation.linear);
+    hasher.add(attenuation.quadratic);
+}
+
+void add(Hasher& hasher, const Motion& motion) {
+    hasher.add(motion.keys.size());
+    if (motion.keys.empty()) return;  // the rest means nothing
+    hasher.add(motion.interpolation);
+    hasher.add(motion.rest);
+    hasher.add(motion.pivot);
+    for (const MotionKey& key : motion.keys) {
+        hasher.add(key.time);
+        hasher.add(key.translation);
+        for (const float component : {key.rotation.w, key.rotation.x, key.rotation.y, key.rotation.z}) {
+            hasher.add(component);
+        }
+        hasher.add(key.scale);
+    }
+}
+
 }  // namespace
 
 std::uint64_t Scene::content_hash() const {
@@ -53,6 +75,7 @@ std::uint64_t Scene::content_hash() const {
     for (const Instance& instance : instances) {
         hasher.add(instance.mesh);
         hasher.add(instance.world_from_object);
+        add(hasher, instance.motion);
     }
     hasher.add(materials.size());
     for (const Material& material : materials) {
@@ -61,6 +84,8 @@ std::uint64_t Scene::content_hash() const {
         hasher.add(material.metallic);
         hasher.add(material.roughness);
         hasher.add(material.metallic_roughness_texture);
+        hasher.add(material.dielectric_reflectance);
+        hasher.add(material.transmission);
         hasher.add(material.emission);
         hasher.add(material.emission_texture);
         hasher.add(material.alpha_mask);
@@ -81,6 +106,7 @@ std::uint64_t Scene::content_hash() const {
     for (const PointLight& light : point_lights) {
         hasher.add(light.position);
         hasher.add(light.intensity);
+        add(hasher, light.attenuation);
     }
     hasher.add(spot_lights.size());
     for (const SpotLight& light : spot_lights) {
@@ -89,11 +115,13 @@ std::uint64_t Scene::content_hash() const {
         hasher.add(light.intensity);
         hasher.add(light.inner_angle);
         hasher.add(light.outer_angle);
+        add(hasher, light.attenuation);
     }
     hasher.add(directional_lights.size());
     for (const DirectionalLight& light : directional_lights) {
         hasher.add(light.direction);
         hasher.add(light.irradiance);
+        hasher.add(light.angular_radius);
     }
     hasher.add(environment.radiance);
     hasher.add(environment.texture);

@@ -53,6 +53,12 @@ bool Scene::has_emissive_surfaces() const {
     return false;
 }
 
+void Scene::move_to(double time) {
+    for (Instance& instance : instances) {
+        if (instance.moves()) instance.world_from_object = instance.motion.pose(time);
+    }
+}
+
 SurfaceSample Scene::surface(const Material& material, glm::vec2 uv) const {
     SurfaceSample sample;
     sample.base_colour = material.base_colour;
@@ -71,6 +77,10 @@ SurfaceSample Scene::surface(const Material& material, glm::vec2 uv) const {
         sample.emission *= glm::vec3(textures[material.emission_texture].sample(uv));
     }
     sample.albedo = sample.base_colour * (1.0f - sample.metallic);
+    const float dielectric_f90 = material.dielectric_reflectance > 0.0f ? 1.0f : 0.0f;
+    sample.specular_f0 = glm::mix(glm::vec3(material.dielectric_reflectance), sample.base_colour, sample.metallic);
+    sample.specular_f90 = glm::vec3(glm::mix(dielectric_f90, 1.0f, sample.metallic));
+    sample.transmission = material.transmission;
     return sample;
 }
 

@@ -12,6 +12,7 @@
 #include "scenes/camera_path.h"
 #include "scenes/light.h"
 #include "scenes/material.h"
+#include "scenes/motion.h"
 #include "scenes/texture.h"
 
 namespace plumb {
@@ -28,17 +29,25 @@ struct Mesh {
 
 struct Instance {
     std::string name;
-    int mesh = 0;  // index into Scene::meshes
-    glm::mat4 world_from_object{1.0f};
+    int mesh = 0;                       // index into Scene::meshes
+    glm::mat4 world_from_object{1.0f};  // at the scene's present time
+    Motion motion{};                    // without keys: the instance stands still
+
+    bool moves() const { return !motion.keys.empty(); }
+    // world_from_object at `time` (seconds); always the same for an instance that stands still.
+    glm::mat4 pose(double time) const { return moves() ? motion.pose(time) : world_from_object; }
 };
 
-// What a material is at one point, textures looked up. Alpha-masked holes are told by `opaque`.
+// What a material is at one point, textures looked up. Alpha-masked holes are told by `is_opaque`.
 struct SurfaceSample {
     glm::vec3 albedo{0.0f};  // diffuse reflectance: base colour * (1 - metallic)
     glm::vec3 base_colour{0.0f};
     glm::vec3 emission{0.0f};
     float metallic = 0.0f;
     float roughness = 1.0f;
+    glm::vec3 specular_f0{0.0f};  // of the specular lobe, see material.h; f0 = f90 = 0: there is none
+    glm::vec3 specular_f90{0.0f};
+    glm::vec3 transmission{0.0f};
 };
 
 struct Bounds {
@@ -69,8 +78,11 @@ struct Scene {
     const CameraPath& path(std::string_view path_name) const;
 
     std::size_t triangle_count() const;  // over all instances
-    Bounds bounds() const;               // world space, over all instances
+    Bounds bounds() const;               // world space, over all instances as they stand now
     bool has_emissive_surfaces() const;
+
+    // Moves every instance that moves to where it is at `time` (seconds).
+    void move_to(double time);
 
     // Material `material` at `uv`.
     SurfaceSample surface(const Material& material, glm::vec2 uv) const;
@@ -79,8 +91,8 @@ struct Scene {
     // Radiance of the environment from unit `direction`.
     glm::vec3 environment_radiance(const glm::vec3& direction) const;
 
-    // A 64-bit hash of everything that can change a pixel: geometry, materials, texels, lights; not cameras, paths,
-    // names.
+    // A 64-bit hash of everything that can change a pixel: geometry and its motion, materials, texels, lights; not
+    // cameras, paths, names.
     std::uint64_t content_hash() const;
 };
 

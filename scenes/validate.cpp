@@ -57,6 +57,15 @@ private:
         }
     }
 
+    void check_attenuation(const Attenuation& attenuation, const char* kind, const std::string& name) const {
+        const auto& [constant, linear, quadratic] = attenuation;
+        const float sum = constant + linear + quadratic;
+        if (!(constant >= 0.0f && linear >= 0.0f && quadratic >= 0.0f && sum > 0.0f && finite(sum))) {
+            fail("{} '{}': attenuation terms {}, {} and {} must be finite, not negative and not all 0", kind, name,
+                 constant, linear, quadratic);
+        }
+    }
+
     void check_mesh(const Mesh& mesh) const {
         check_index(mesh.material, scene_.materials.size(), fmt::format("mesh '{}'", mesh.name), "material");
         const std::size_t count = mesh.positions.size();
@@ -103,20 +112,31 @@ private:
             fail("{} has a transform of determinant {}; it must not mirror, flatten or be infinite", owner,
                  determinant);
         }
+        try {
+            if (instance.moves()) instance.motion.check();
+        } catch (const SceneError& error) {
+            fail("{}: {}", owner, error.what());
+        }
+    }
+
+    void check_fraction(const glm::vec3& value, const char* what, const Material& material) const {
+        const bool possible = finite(value) && glm::all(glm::greaterThanEqual(value, glm::vec3(0.0f))) &&
+                              glm::all(glm::lessThanEqual(value, glm::vec3(1.0f)));
+        if (!possible) {
+            fail("material '{}': {} ({}, {}, {}) must lie between 0 and 1", material.name, what, value.x, value.y,
+                 value.z);
+        }
     }
 
     void check_material(const Material& material) const {
-        const glm::vec3& c = material.base_colour;
-        const bool possible = finite(c) && glm::all(glm::greaterThanEqual(c, glm::vec3(0.0f))) &&
-                              glm::all(glm::lessThanEqual(c, glm::vec3(1.0f)));
-        if (!possible) {
-            fail("material '{}': base colour ({}, {}, {}) must lie between 0 and 1", material.name, c.x, c.y, c.z);
-        }
+        check_fraction(material.base_colour, "base colour", material);
         if (!(material.metallic >= 0.0f && material.metallic <= 1.0f && material.roughness >= 0.0f &&
               material.roughness <= 1.0f)) {
             fail("material '{}': metallic {} and roughness {} must lie between 0 and 1", material.name,
                  material.metallic, material.roughness);
         }
+        check_fraction(glm::vec3(material.dielectric_reflectance), "dielectric reflectance", material);
+        check_fraction(material.transmission, "transmission", material);
         check_light(material.emission, "material", material.name);
         check_texture_index(material.base_colour_texture, material);
         check_texture_index(material.metallic_roughness_texture, material);
@@ -138,10 +158,12 @@ private:
     void check_lights() const {
         for (const PointLight& light : scene_.point_lights) {
             check_light(light.intensity, "point light", light.name);
+            check_attenuation(light.attenuation, "point light", light.name);
             if (!finite(light.position)) fail("point light '{}': its position is not finite", light.name);
         }
         for (const SpotLight& light : scene_.spot_lights) {
             check_light(light.intensity, "spot light", light.name);
+            check_attenuation(light.attenuation, "spot light", light.name);
             check_direction(light.direction, "spot light", light.name);
             if (!finite(light.position)) fail("spot light '{}': its position is not finite", light.name);
             if (!(light.inner_angle >= 0.0f && light.inner_angle < light.outer_angle && light.outer_angle < 1.5708f)) {
@@ -152,6 +174,10 @@ private:
         for (const DirectionalLight& light : scene_.directional_lights) {
             check_light(light.irradiance, "directional light", light.name);
             check_direction(light.direction, "directional light", light.name);
+            if (!(light.angular_radius >= 0.0f && light.angular_radius < 1.5707f)) {
+                fail("directional light '{}': angular radius {} must lie between 0 and pi / 2", light.name,
+                     light.angular_radius);
+            }
         }
         check_light(scene_.environment.radiance, "environment", "");
         if (!finite(scene_.environment.rotation)) fail("the environment's rotation is not finite");
