@@ -14,12 +14,12 @@ Camera CameraPath::at(float time) const {
     const auto interpolate = [&](glm::vec3 CameraKey::*member) {
         return catmull_rom(keys, span, [member](const CameraKey& key) { return key.*member; });
     };
-    Camera camera = Camera::look_at(fmt::format("{}@{:g}s", name, time), interpolate(&CameraKey::eye),
-                                    interpolate(&CameraKey::target), vertical_fov);
+    const glm::vec3 eye = interpolate(&CameraKey::eye), target = interpolate(&CameraKey::target);
+    Camera camera = Camera::look_at(fmt::format("{}@{:g}s", name, time), eye, target, vertical_fov);
     camera.near_plane = near_plane;
     camera.far_plane = far_plane;
     camera.aperture_radius = aperture_radius;
-    camera.focus_distance = focus_distance;
+    camera.focus_distance = focus_distance == 0.0f ? glm::distance(eye, target) : focus_distance;
     return camera;
 }
 

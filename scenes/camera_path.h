@@ -20,8 +20,9 @@ struct CameraPath {
     std::string name;
     float vertical_fov = 0.8726646f;  // radians
     float near_plane = 0.1f, far_plane = 200.0f;
-    std::vector<CameraKey> keys;                          // times strictly increasing
-    float aperture_radius = 0.0f, focus_distance = 1.0f;  // metres, as Camera has them
+    std::vector<CameraKey> keys;   // times strictly increasing
+    float aperture_radius = 0.0f;  // metres, as Camera has it
+    float focus_distance = 0.0f;   // metres; 0: the target is in focus, wherever it goes
 
     float duration() const { return keys.empty() ? 0.0f : keys.back().time - keys.front().time; }
     // Throws SceneError where there are no keys or times do not increase.

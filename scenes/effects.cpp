@@ -18,6 +18,14 @@ std::vector<const Material*> materials_in_use(const Scene& scene) {
     return materials;
 }
 
+// "leaf, chain, vase_plant and 7 more"
+std::string list_of(std::vector<std::string> names) {
+    constexpr std::size_t shown = 5;
+    const std::string rest = names.size() > shown ? fmt::format(" and {} more", names.size() - shown) : "";
+    names.resize(std::min(names.size(), shown));
+    return fmt::format("{}{}", fmt::join(names, ", "), rest);
+}
+
 template <typename Property>
 Effect of_materials(EffectKind kind, const std::vector<const Material*>& materials, Property has_property) {
     std::vector<std::string> names;
@@ -25,12 +33,7 @@ Effect of_materials(EffectKind kind, const std::vector<const Material*>& materia
         if (has_property(*material)) names.push_back(material->name);
     }
     if (names.empty()) return {kind, false, fmt::format("none of {} materials in use", materials.size())};
-    constexpr std::size_t shown = 5;
-    const std::string rest = names.size() > shown ? fmt::format(" and {} more", names.size() - shown) : "";
-    const std::size_t count = names.size();
-    names.resize(std::min(count, shown));
-    return {kind, true,
-            fmt::format("{} of {} materials in use: {}{}", count, materials.size(), fmt::join(names, ", "), rest)};
+    return {kind, true, fmt::format("{} of {} materials in use: {}", names.size(), materials.size(), list_of(names))};
 }
 
 template <typename Light>
@@ -39,6 +42,19 @@ Effect of_lights(EffectKind kind, const std::vector<Light>& lights) {
     std::vector<std::string> names;
     for (const Light& light : lights) names.push_back(light.name.empty() ? "unnamed" : light.name);
     return {kind, true, fmt::format("{}: {}", lights.size(), fmt::join(names, ", "))};
+}
+
+// Appends the names of the elements that have a property.
+template <typename Named, typename Property>
+void add_names(std::vector<std::string>& names, const std::vector<Named>& elements, Property has_property) {
+    for (const Named& element : elements) {
+        if (has_property(element)) names.push_back(element.name.empty() ? "unnamed" : element.name);
+    }
+}
+
+Effect of_names(EffectKind kind, const std::vector<std::string>& names, const std::string& reason_if_none) {
+    if (names.empty()) return {kind, false, reason_if_none};
+    return {kind, true, fmt::format("{}: {}", names.size(), list_of(names))};
 }
 
 bool uses_texture(const Material& m) {
@@ -69,12 +85,16 @@ const char* to_string(EffectKind kind) {
             return "textures";
         case EffectKind::one_sided_surfaces:
             return "one-sided surfaces";
-        case EffectKind::refraction:
-            return "refraction";
+        case EffectKind::transparency:
+            return "transparency";
         case EffectKind::moving_objects:
             return "moving objects";
         case EffectKind::lens:
             return "lens";
+        case EffectKind::attenuation:
+            return "attenuation";
+        case EffectKind::sun_discs:
+            return "sun discs";
     }
     return "";
 }
@@ -85,6 +105,16 @@ EffectPlan plan_effects(const Scene& scene) {
     const std::vector<const Material*> materials = materials_in_use(scene);
     const Environment& environment = scene.environment;
     const glm::vec3& sky = environment.radiance;
+    const auto has_lens = [](const auto& camera) { return camera.aperture_radius > 0.0f; };
+    const auto falls_off_otherwise = [](const auto& light) { return !light.attenuation.is_inverse_square(); };
+    const auto is_disc = [](const DirectionalLight& light) { return light.angular_radius > 0.0f; };
+    std::vector<std::string> moving, lenses, attenuated, discs;
+    add_names(moving, scene.instances, [](const Instance& instance) { return instance.moves(); });
+    add_names(lenses, scene.cameras, has_lens);
+    add_names(lenses, scene.paths, has_lens);
+    add_names(attenuated, scene.point_lights, falls_off_otherwise);
+    add_names(attenuated, scene.spot_lights, falls_off_otherwise);
+    add_names(discs, scene.directional_lights, is_disc);
     EffectPlan plan;
     plan.effects = {
         of_materials(EffectKind::emissive_surfaces, materials, [](const Material& m) { return m.is_emissive(); }),
@@ -95,14 +125,16 @@ EffectPlan plan_effects(const Scene& scene) {
          fmt::format("radiance ({:g}, {:g}, {:g})", sky.x, sky.y, sky.z)},
         {EffectKind::environment_image, !environment.is_black() && environment.texture != no_texture,
          environment.texture == no_texture ? "the environment is constant" : scene.textures[environment.texture].name},
-        of_materials(EffectKind::glossy_surfaces, materials,
-                     [](const Material& m) { return m.metallic > 0.0f || m.roughness < 1.0f; }),
+        of_materials(EffectKind::glossy_surfaces, materials, [](const Material& m) { return m.has_specular_lobe(); }),
         of_materials(EffectKind::alpha_masks, materials, [](const Material& m) { return m.alpha_mask; }),
         of_materials(EffectKind::textures, materials, uses_texture),
         of_materials(EffectKind::one_sided_surfaces, materials, [](const Material& m) { return !m.two_sided; }),
-        {EffectKind::refraction, false, "materials have no transparency but alpha masks"},
-        {EffectKind::moving_objects, false, "instances stand still, only cameras move"},
-        {EffectKind::lens, false, "cameras are pinholes"},
+        of_materials(EffectKind::transparency, materials, [](const Material& m) { return m.is_transparent(); }),
+        of_names(EffectKind::moving_objects, moving,
+                 fmt::format("all {} instances stand still", scene.instances.size())),
+        of_names(EffectKind::lens, lenses, "all cameras are pinholes"),
+        of_names(EffectKind::attenuation, attenuated, "all lamps fall off with the squared distance"),
+        of_names(EffectKind::sun_discs, discs, "no directional light has an angular radius"),
     };
     return plan;
 }

@@ -15,13 +15,15 @@ enum class EffectKind {
     directional_lights,
     environment,
     environment_image,
-    glossy_surfaces,  // metallic > 0 or roughness < 1
+    glossy_surfaces,  // with a specular lobe
     alpha_masks,
     textures,
     one_sided_surfaces,
-    refraction,      // materials have no such property
-    moving_objects,  // instances stand still; only cameras move
-    lens,            // cameras are pinholes
+    transparency,    // thin sheets that light passes straight through
+    moving_objects,  // instances with a motion
+    lens,            // cameras or camera paths with an aperture
+    attenuation,     // lamps that fall off otherwise than with the squared distance
+    sun_discs,       // directional lights with an angular radius
 };
 
 const char* to_string(EffectKind kind);

@@ -16,7 +16,9 @@
 namespace plumb {
 namespace {
 
-constexpr std::array<std::string_view, 2> understood = {"KHR_lights_punctual", "KHR_materials_emissive_strength"};
+constexpr std::array<std::string_view, 5> understood = {"KHR_lights_punctual", "KHR_materials_emissive_strength",
+                                                        "KHR_materials_ior", "KHR_materials_specular",
+                                                        "KHR_materials_transmission"};
 
 // The JSON of a .gltf as it is, of a .glb out of its first chunk: after 12 bytes of header its length, "JSON", its
 // bytes.
@@ -32,6 +34,28 @@ std::string json_text(const std::filesystem::path& file) {
     return bytes.substr(20, length);
 }
 
+GltfMaterial read_material(const nlohmann::json& material, GltfExtras& extras) {
+    using nlohmann::json;
+    const json extensions = material.value("extensions", json::object());
+    const auto extension = [&](const char* name) { return extensions.value(name, json::object()); };
+    const json specular = extension("KHR_materials_specular"), transmission = extension("KHR_materials_transmission");
+    extras.has_normal_maps = extras.has_normal_maps || material.contains("normalTexture");
+    extras.has_specular_maps =
+        extras.has_specular_maps || specular.contains("specularTexture") || specular.contains("specularColorTexture");
+    extras.has_transmission_maps = extras.has_transmission_maps || transmission.contains("transmissionTexture");
+    GltfMaterial result;
+    result.emissive_strength = extension("KHR_materials_emissive_strength").value("emissiveStrength", 1.0f);
+    result.transmission = std::clamp(transmission.value("transmissionFactor", 0.0f), 0.0f, 1.0f);
+    // Fresnel's reflectance at normal incidence; an index of 0 stands for 1, as that extension says.
+    const float index = extension("KHR_materials_ior").value("ior", 1.5f);
+    const float root = (index - 1.0f) / (index + 1.0f);
+    const auto colour = specular.value("specularColorFactor", std::array<float, 3>{1.0f, 1.0f, 1.0f});
+    const float luminance = 0.2126f * colour[0] + 0.7152f * colour[1] + 0.0722f * colour[2];
+    result.dielectric_reflectance =
+        std::min(root * root * luminance, 1.0f) * std::clamp(specular.value("specularFactor", 1.0f), 0.0f, 1.0f);
+    return result;
+}
+
 }  // namespace
 
 GltfExtras read_gltf_extras(const std::filesystem::path& file) {
@@ -41,10 +65,7 @@ GltfExtras read_gltf_extras(const std::filesystem::path& file) {
         const json document = json::parse(json_text(file));
         const auto list = [&](const char* key) { return document.value(key, json::array()); };
         for (const json& material : list("materials")) {
-            const json extensions = material.value("extensions", json::object());
-            const json strength = extensions.value("KHR_materials_emissive_strength", json::object());
-            extras.emissive_strengths.push_back(strength.value("emissiveStrength", 1.0f));
-            extras.has_normal_maps = extras.has_normal_maps || material.contains("normalTexture");
+            extras.materials.push_back(read_material(material, extras));
         }
         for (const json& camera : list("cameras")) {
             const json perspective = camera.value("perspective", json::object());

@@ -7,6 +7,7 @@
 #include <map>
 #include <numbers>
 #include <optional>
+#include <set>
 #include <tuple>
 
 #include <assimp/Importer.hpp>
@@ -204,7 +205,8 @@ private:
         std::vector<Instance> instances;
         for (const Instance& instance : scene_.instances) {
             const Mesh& mesh = scene_.meshes[instance.mesh];
-            if (uses[instance.mesh] == 1 && instance.world_from_object == glm::mat4(1.0f)) {
+            const bool apart = std::ranges::find(options_.keep_apart, instance.name) != options_.keep_apart.end();
+            if (!apart && uses[instance.mesh] == 1 && instance.world_from_object == glm::mat4(1.0f)) {
                 groups[{mesh.material, mesh.normals.empty(), mesh.uvs.empty()}].push_back(&mesh);
             } else {
                 instances.push_back(instance);
@@ -295,6 +297,8 @@ private:
             ignored.push_back(fmt::format("extensions {}", fmt::join(extras_->ignored_extensions, ", ")));
         }
         if (extras_ && extras_->has_normal_maps) ignored.push_back("normal maps");
+        if (extras_ && extras_->has_specular_maps) ignored.push_back("specular maps");
+        if (extras_ && extras_->has_transmission_maps) ignored.push_back("transmission maps");
         if (has_vertex_colours_) ignored.push_back("vertex colours");
         if (!extras_ && source_->mNumCameras + source_->mNumLights > 0) {
             ignored.push_back("cameras and lights, whose units this format does not define");
@@ -309,9 +313,20 @@ private:
         if (mirrored_ > 0) changes += fmt::format(", {} mirrored instances written out", mirrored_);
         scene_.import_notes.insert(
             scene_.import_notes.begin(),
-            fmt::format("{}: {} triangles, {} materials, {} textures, {:g} m per unit; {}", file_.filename().string(),
-                        scene_.triangle_count(), scene_.materials.size(), scene_.textures.size(), options_.scale,
-                        changes));
+            fmt::format("{}: {} triangles, {} materials{}, {} textures, {:g} m per unit; {}", file_.filename().string(),
+                        scene_.triangle_count(), scene_.materials.size(), lobes_of_materials(), scene_.textures.size(),
+                        options_.scale, changes));
+    }
+
+    // " (3 glossy, 1 transparent)" of those in use.
+    std::string lobes_of_materials() const {
+        std::set<int> used;
+        for (const Mesh& mesh : scene_.meshes) used.insert(mesh.material);
+        const auto count = [&](bool (Material::*property)() const) {
+            return std::ranges::count_if(used, [&](int i) { return (scene_.materials[i].*property)(); });
+        };
+        const auto glossy = count(&Material::has_specular_lobe), transparent = count(&Material::is_transparent);
+        return glossy + transparent == 0 ? "" : fmt::format(" ({} glossy, {} transparent)", glossy, transparent);
     }
 
     template <typename... Arguments>

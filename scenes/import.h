@@ -6,12 +6,18 @@
 //
 // Decisions:
 //   glTF light units: one candela, lux or nit counts as one W/sr, W/m^2 or W/(m^2 sr): lights and emission keep their
-//   ratio. glTF alphaMode BLEND: opaque where the material's own alpha is at least 0.5 or varies in a texture, which
-//   then masks at
-//     0.5; a material whose factor alone is below 0.5 (glass) is left out. MTL `d` below 0.5 alike; map_d masks at 0.5.
+//   ratio.
+//   Specular lobes: glTF's dielectrics reflect 0.04, or what KHR_materials_ior and KHR_materials_specular say (its
+//   colour
+//     counts by its luminance, its textures do not). Other formats have none but metals, unless `specular` is set.
+//   Transparency is that of thin sheets, without refraction. Coverage a, from glTF's alphaMode BLEND or MTL's d (Tr):
+//     transmission 1 - a, times MTL's Tf; base colour and emission times a. Tf alone says nothing: exporters write
+//     Tf 1 1 1 for everything. KHR_materials_transmission lets factor * base colour through its dielectric part. An
+//     image of alpha that has holes somewhere (alpha below 0.1) is a mask at 0.5 that says where there is a surface;
+//     one that has none is a pane and counts by its mean. MTL's map_d is always a mask. A coverage of 0 is left out.
 //   glTF doubleSided: false means one-sided, as that format says. All other formats: two-sided, emitters too.
-//   MTL: Kd is the base colour; where Kd is black and Ks is not, a metal of colour Ks; Ns gives the roughness where Ks
-//   > 0. Normal maps, occlusion maps and vertex colours are not used.
+//   MTL: Kd is the base colour; where Kd is black and Ks is not, a metal of colour Ks, unless transparent; Ns gives the
+//   roughness where Ks > 0. Normal maps, occlusion maps and vertex colours are not used.
 #pragma once
 
 #include <filesystem>
@@ -40,6 +46,12 @@ struct ImportOptions {
     // Exporters write a grey Kd (0.588 from 3ds Max) under every texture, which a strict reader multiplies with it and
     // so darkens the whole scene. True: a texture stands alone.
     bool ignore_diffuse_colour_under_texture = false;
+    // MTL and its like leave open what Ks means. True: a specular lobe of reflectance luminance(Ks), or that of Ni
+    // where the material is transparent; mirrors (illum 3, 5, 8 with Ks brighter than Kd) are metals of colour Ks; Ns
+    // is Blinn-Phong's exponent, from 1000, the largest one, and under illum 3 and more without roughness. False: none
+    // but metals.
+    bool specular = false;
+    std::vector<std::string> keep_apart;  // names of nodes or groups that are to stay instances of their own
 };
 
 // The scene in `file`, repaired (scenes/repair.h) and valid (scenes/validate.h). Throws SceneError that names the file,

@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include <assimp/GltfMaterial.h>
+#include <assimp/ObjMaterial.h>
 #include <assimp/material.h>
 #include <assimp/scene.h>
 #include <fmt/format.h>
@@ -73,11 +74,35 @@ TextureWrap wrap_of(int mode) {
     }
 }
 
-bool has_holes(const Texture& texture, float cutoff) {
-    for (std::size_t i = 3; i < texture.texels.size(); i += 4) {
-        if (texture.texels[i] < cutoff) return true;
+struct ChannelRange {
+    float lowest = 1.0f, mean = 0.0f;
+};
+
+ChannelRange range_of(const Texture& texture, int channel) {
+    ChannelRange range;
+    double sum = 0.0;
+    for (std::size_t i = static_cast<std::size_t>(channel); i < texture.texels.size(); i += 4) {
+        const float value = texture.texels[i];
+        range.lowest = std::min(range.lowest, value);
+        sum += value;
     }
-    return false;
+    range.mean = static_cast<float>(sum / (0.25 * static_cast<double>(texture.texels.size())));
+    return range;
+}
+
+constexpr float hole_alpha = 0.1f;           // an image of alpha that falls below it has holes
+constexpr float largest_exponent = 1000.0f;  // of Ns, which MTL limits to 0..1000
+
+float luminance(const glm::vec3& colour) { return glm::dot(colour, glm::vec3(0.2126f, 0.7152f, 0.0722f)); }
+
+// A sheet that covers a share `coverage` of what lies behind; `tint` is what the rest passes. Returns false where
+// nothing of the sheet is left.
+bool cover(Material& material, float coverage, const glm::vec3& tint) {
+    if (coverage > 1.0f - 0.5f / 255.0f) return true;  // opaque but for the rounding to 8 bits
+    material.transmission = coverage * material.transmission + (1.0f - coverage) * tint;
+    material.base_colour *= coverage;
+    material.emission *= coverage;
+    return coverage > 0.0f;
 }
 
 class MaterialImporter {
@@ -87,19 +112,22 @@ public:
         : source_(source), file_(file), extras_(extras), options_(options), scene_(scene) {}
 
     std::vector<bool> run() {
-        std::vector<std::string> see_through;
+        std::vector<std::string> invisible, transparent;
         for (unsigned i = 0; i < source_.mNumMaterials; ++i) {
             const aiMaterial& from = *source_.mMaterials[i];
             Material material;
             material.name = from.GetName().C_Str();
             const bool left_out = extras_ ? read_gltf(from, i, material) : read_classic(from, material);
-            if (left_out) see_through.push_back(material.name);
+            if (left_out)
+                invisible.push_back(material.name);
+            else if (material.is_transparent())
+                transparent.push_back(material.name);
             left_out_.push_back(left_out);
-            limit_colour(material);
             scene_.materials.push_back(std::move(material));
         }
-        if (!see_through.empty()) {
-            note("see-through materials left out (there is no refraction): {}", fmt::join(see_through, ", "));
+        if (!invisible.empty()) note("invisible materials left out: {}", fmt::join(invisible, ", "));
+        if (!transparent.empty()) {
+            note("transparent materials, taken as thin sheets without refraction: {}", fmt::join(transparent, ", "));
         }
         drop_by_name();
         for (const std::string& name : options_.upside_down_textures) {
@@ -211,30 +239,50 @@ private:
         material.roughness = number(from, AI_MATKEY_ROUGHNESS_FACTOR, 1.0f);
         material.metallic_roughness_texture =
             texture(from, aiTextureType_METALNESS, TextureContent::data, material.name);
-        const float strength = index < extras_->emissive_strengths.size() ? extras_->emissive_strengths[index] : 1.0f;
-        material.emission = strength * colour(from, AI_MATKEY_COLOR_EMISSIVE, glm::vec3(0.0f));
+        const GltfMaterial extra = index < extras_->materials.size() ? extras_->materials[index] : GltfMaterial{};
+        material.dielectric_reflectance = extra.dielectric_reflectance;
+        material.emission = extra.emissive_strength * colour(from, AI_MATKEY_COLOR_EMISSIVE, glm::vec3(0.0f));
         material.emission_texture = texture(from, aiTextureType_EMISSIVE, TextureContent::colour, material.name);
         bool double_sided = false;
         from.Get(AI_MATKEY_TWOSIDED, double_sided);
         material.two_sided = double_sided;
 
+        limit_colour(material);
+        if (extra.transmission > 0.0f) {
+            float metallic = material.metallic;
+            if (material.metallic_roughness_texture != no_texture) {
+                metallic *= range_of(scene_.textures[material.metallic_roughness_texture], 2).mean;
+            }
+            const float through = extra.transmission * (1.0f - metallic);
+            material.transmission = through * material.base_colour;
+            material.base_colour *= 1.0f - through;
+        }
+        return !read_gltf_alpha(from, material);
+    }
+
+    // False where the material is invisible.
+    bool read_gltf_alpha(const aiMaterial& from, Material& material) {
         aiString mode("OPAQUE");
         from.Get(AI_MATKEY_GLTF_ALPHAMODE, mode);
-        if (mode == aiString("OPAQUE")) return false;
+        if (mode == aiString("OPAQUE")) return true;
         aiColor4D factor(1.0f, 1.0f, 1.0f, 1.0f);
         from.Get(AI_MATKEY_BASE_COLOR, factor);
-        const bool mask = mode == aiString("MASK");
-        const float cutoff = mask ? number(from, AI_MATKEY_GLTF_ALPHACUTOFF, 0.5f) : 0.5f;
-        if (factor.a < cutoff) return true;
-        if (material.base_colour_texture != no_texture) {
-            material.alpha_mask = true;
-            material.alpha_cutoff = cutoff / factor.a;
+        const bool has_texture = material.base_colour_texture != no_texture;
+        if (mode == aiString("MASK")) {
+            const float cutoff = number(from, AI_MATKEY_GLTF_ALPHACUTOFF, 0.5f);
+            if (factor.a < cutoff) return false;
+            material.alpha_mask = has_texture;
+            material.alpha_cutoff = has_texture ? cutoff / factor.a : material.alpha_cutoff;
+            return true;
         }
-        if (!mask) {
-            note("material '{}': alphaMode BLEND taken as {}", material.name,
-                 material.alpha_mask ? "a mask at alpha 0.5" : "opaque");
+        ChannelRange alpha{1.0f, 1.0f};
+        if (has_texture) alpha = range_of(scene_.textures[material.base_colour_texture], 3);
+        material.alpha_mask = alpha.lowest < hole_alpha;
+        if (material.alpha_mask) {
+            note("material '{}': alphaMode BLEND with an image of alpha that has holes taken as a mask at alpha 0.5",
+                 material.name);
         }
-        return false;
+        return cover(material, factor.a * (material.alpha_mask ? 1.0f : alpha.mean), glm::vec3(1.0f));
     }
 
     bool read_classic(const aiMaterial& from, Material& material) {
@@ -243,17 +291,9 @@ private:
         if (options_.ignore_diffuse_colour_under_texture && material.base_colour_texture != no_texture) {
             material.base_colour = glm::vec3(1.0f);
         }
-        const glm::vec3 specular = colour(from, AI_MATKEY_COLOR_SPECULAR, glm::vec3(0.0f));
-        const float exponent = number(from, AI_MATKEY_SHININESS, 0.0f);
-        const bool shiny = std::max({specular.x, specular.y, specular.z}) > 0.0f && exponent > 0.0f;
-        if (shiny) {
-            // Phong exponent to GGX alpha: alpha = sqrt(2 / (n + 2)) (Walter et al. 2007); roughness = sqrt(alpha).
-            material.roughness = std::pow(2.0f / (exponent + 2.0f), 0.25f);
-        }
-        if (material.base_colour == glm::vec3(0.0f) && std::max({specular.x, specular.y, specular.z}) > 0.1f) {
-            material.base_colour = specular;
-            material.metallic = 1.0f;
-        }
+        limit_colour(material);
+        const float coverage = number(from, AI_MATKEY_OPACITY, 1.0f);
+        read_highlight(from, coverage < 1.0f, material);
         material.emission = colour(from, AI_MATKEY_COLOR_EMISSIVE, glm::vec3(0.0f));
         material.emission_texture = texture(from, aiTextureType_EMISSIVE, TextureContent::colour, material.name);
         if (material.emission_texture != no_texture && !material.is_emissive()) material.emission = glm::vec3(1.0f);
@@ -262,9 +302,43 @@ private:
         if (material.alpha_texture != no_texture) {
             const Texture& mask = scene_.textures[material.alpha_texture];
             material.alpha_mask = true;
-            material.alpha_channel = has_holes(mask, 1.0f) ? 3 : 0;  // a mask image is grey, or carries it in its alpha
+            material.alpha_channel =
+                range_of(mask, 3).lowest < 1.0f ? 3 : 0;  // a mask image is grey, or carries it in its alpha
         }
-        return number(from, AI_MATKEY_OPACITY, 1.0f) < 0.5f;
+        // Other formats than MTL give this colour other meanings.
+        const bool is_mtl = lower_case(file_.extension()) == ".obj";
+        const glm::vec3 filter = is_mtl ? colour(from, AI_MATKEY_COLOR_TRANSPARENT, glm::vec3(1.0f)) : glm::vec3(1.0f);
+        return !cover(material, coverage, glm::clamp(filter, 0.0f, 1.0f));
+    }
+
+    void read_highlight(const aiMaterial& from, bool transparent, Material& material) {
+        const glm::vec3 specular = colour(from, AI_MATKEY_COLOR_SPECULAR, glm::vec3(0.0f));
+        const float brightest = std::max({specular.x, specular.y, specular.z});
+        const float exponent = number(from, AI_MATKEY_SHININESS, 0.0f);
+        if (brightest > 0.0f && exponent > 0.0f) {
+            // Blinn-Phong exponent to GGX alpha: alpha = sqrt(2 / (n + 2)) (Walter et al. 2007); roughness =
+            // sqrt(alpha).
+            material.roughness = std::pow(2.0f / (exponent + 2.0f), 0.25f);
+        }
+        if (!transparent && material.base_colour == glm::vec3(0.0f) && brightest > 0.1f) {
+            material.base_colour = specular;
+            material.metallic = 1.0f;
+        }
+        int illumination = 2;  // MTL's models: 0 and 1 without highlights, 3 and more with traced reflections
+        from.Get(AI_MATKEY_OBJ_ILLUM, illumination);
+        if (!options_.specular || brightest == 0.0f || illumination < 2) return;
+        if (illumination > 2 || exponent >= largest_exponent) material.roughness = 0.0f;
+        const bool mirror = illumination == 3 || illumination == 5 || illumination == 8;
+        const float index = number(from, AI_MATKEY_REFRACTI, 1.0f);
+        if (mirror && luminance(specular) > luminance(material.base_colour)) {
+            material.base_colour = specular;
+            material.metallic = 1.0f;
+        } else if (material.metallic == 0.0f) {
+            const float root = (index - 1.0f) / (index + 1.0f);
+            const float reflectance = transparent && index > 1.0f ? root * root : luminance(specular);
+            material.dielectric_reflectance = std::min(reflectance, 1.0f);
+        }
+        limit_colour(material);
     }
 
     const aiScene& source_;

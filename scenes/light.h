@@ -18,6 +18,7 @@ struct Attenuation {
     float divisor(float distance, float squared_distance) const {
         return constant + linear * distance + quadratic * squared_distance;
     }
+    bool is_inverse_square() const { return constant == 0.0f && linear == 0.0f && quadratic == 1.0f; }
     float evaluate(float distance) const { return 1.0f / divisor(distance, distance * distance); }
 };
 

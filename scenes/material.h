@@ -24,7 +24,7 @@ struct Material {
     float dielectric_reflectance = 0.0f;          // specular reflectance of the non-metallic part at normal incidence
                                                   // (glTF: 0.04); 0: that part is Lambertian, without a specular lobe
     glm::vec3 transmission{0.0f};  // fraction of light that passes straight through; 0: opaque. The other
-                                   // lobes do not shrink by it: transmission + albedo should not exceed 1
+                                   // lobes do not shrink by it: base_colour + transmission must not exceed 1
     glm::vec3 emission{0.0f};      // radiance in W / (m^2 sr), linear; leaves both sides where two_sided
     int emission_texture = no_texture;
     bool alpha_mask = false;  // surface exists only where alpha >= alpha_cutoff

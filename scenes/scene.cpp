@@ -37,11 +37,15 @@ std::size_t Scene::triangle_count() const {
 }
 
 Bounds Scene::bounds() const {
+    Bounds all;
+    for (const Instance& instance : instances) all.add(bounds(instance));
+    return all;
+}
+
+Bounds Scene::bounds(const Instance& instance) const {
     Bounds bounds;
-    for (const Instance& instance : instances) {
-        for (const glm::vec3& p : meshes[instance.mesh].positions) {
-            bounds.add(glm::vec3(instance.world_from_object * glm::vec4(p, 1.0f)));
-        }
+    for (const glm::vec3& p : meshes[instance.mesh].positions) {
+        bounds.add(glm::vec3(instance.world_from_object * glm::vec4(p, 1.0f)));
     }
     return bounds;
 }

@@ -53,6 +53,7 @@ struct SurfaceSample {
 struct Bounds {
     glm::vec3 lower{1e30f}, upper{-1e30f};
     void add(const glm::vec3& point) { lower = glm::min(lower, point), upper = glm::max(upper, point); }
+    void add(const Bounds& other) { lower = glm::min(lower, other.lower), upper = glm::max(upper, other.upper); }
     bool empty() const { return lower.x > upper.x; }
     glm::vec3 centre() const { return 0.5f * (lower + upper); }
     float diagonal() const { return empty() ? 0.0f : glm::length(upper - lower); }
@@ -79,6 +80,7 @@ struct Scene {
 
     std::size_t triangle_count() const;  // over all instances
     Bounds bounds() const;               // world space, over all instances as they stand now
+    Bounds bounds(const Instance& instance) const;
     bool has_emissive_surfaces() const;
 
     // Moves every instance that moves to where it is at `time` (seconds).

@@ -16,6 +16,7 @@
 #include "scenes/import.h"
 #include "scenes/mesh_maker.h"
 #include "scenes/scene_error.h"
+#include "scenes/scene_file_tables.h"
 #include "scenes/texture_file.h"
 #include "scenes/toml_reader.h"
 #include "scenes/validate.h"
@@ -23,10 +24,10 @@
 namespace plumb {
 namespace {
 
-constexpr std::array wrapper_names = {"bathroom",       "bunny",         "conference",          "cornell-original",
-                                      "cornell-sphere", "crytek-sponza", "crytek-sponza-lamps", "dabrovic-sponza",
-                                      "dragon",         "dragon-full",   "flight-helmet",       "nvpro-cornell",
-                                      "veach-ajar"};
+constexpr std::array wrapper_names = {
+    "bathroom",         "bathroom-glossy", "bunny",         "conference",          "cornell-glossy",  "cornell-mirror",
+    "cornell-original", "cornell-sphere",  "crytek-sponza", "crytek-sponza-lamps", "dabrovic-sponza", "dragon",
+    "dragon-full",      "flight-helmet",   "nvpro-cornell", "veach-ajar"};
 
 using Folders = std::vector<std::filesystem::path>;
 
@@ -61,31 +62,9 @@ ImportOptions read_import_options(TomlReader reader) {
     reader.read("upside_down_textures", options.upside_down_textures);
     reader.read("flip_winding", options.flip_winding);
     reader.read("ignore_diffuse_colour_under_texture", options.ignore_diffuse_colour_under_texture);
+    reader.read("specular", options.specular);
     reader.finish();
     return options;
-}
-
-void read_materials(TomlReader reader, Scene& scene) {
-    for (const std::string& name : reader.names()) {
-        TomlReader entry = reader.table(name);
-        bool found = false;
-        for (Material& material : scene.materials) {
-            if (material.name != name) continue;
-            found = true;
-            entry.read("base_colour", material.base_colour);
-            entry.read("metallic", material.metallic);
-            entry.read("roughness", material.roughness);
-            entry.read("emission", material.emission);
-            entry.read("two_sided", material.two_sided);
-        }
-        if (!found) {
-            std::vector<std::string> names;
-            for (const Material& material : scene.materials) names.push_back(material.name);
-            reader.complain(name, fmt::format("names a material '{}' that the mesh file does not have; it has: {}",
-                                              name, fmt::join(names, ", ")));
-        }
-        entry.finish();
-    }
 }
 
 void add_ground(TomlReader reader, Scene& scene) {
@@ -120,97 +99,6 @@ void read_environment(TomlReader reader, Scene& scene, const std::string& wanted
     float rotation = 0.0f;
     if (reader.read("rotation", rotation)) scene.environment.rotation = glm::radians(rotation);
     reader.finish();
-}
-
-glm::vec3 read_direction(TomlReader& reader, const char* key, const glm::vec3& otherwise) {
-    glm::vec3 direction = otherwise;
-    reader.read(key, direction);
-    if (!(glm::length(direction) > 1e-6f)) reader.complain(key, fmt::format("has a '{}' of zero length", key));
-    return glm::normalize(direction);
-}
-
-void read_lights(TomlReader& reader, Scene& scene) {
-    for (TomlReader& entry : reader.tables("point_lights")) {
-        PointLight light;
-        entry.read("name", light.name);
-        entry.require("position", light.position);
-        entry.require("intensity", light.intensity);
-        entry.finish();
-        scene.point_lights.push_back(light);
-    }
-    for (TomlReader& entry : reader.tables("spot_lights")) {
-        SpotLight light;
-        entry.read("name", light.name);
-        entry.require("position", light.position);
-        entry.require("intensity", light.intensity);
-        glm::vec3 target;
-        if (entry.read("target", target)) {
-            if (entry.has("direction")) entry.complain("direction", "has both a direction and a target; give one");
-            if (target == light.position) entry.complain("target", "has its target where it stands; move one of them");
-            light.direction = glm::normalize(target - light.position);
-        } else {
-            light.direction = read_direction(entry, "direction", light.direction);
-        }
-        float inner = glm::degrees(light.inner_angle), outer = glm::degrees(light.outer_angle);
-        entry.read("inner_angle", inner);
-        entry.read("outer_angle", outer);
-        light.inner_angle = glm::radians(inner);
-        light.outer_angle = glm::radians(outer);
-        entry.finish();
-        scene.spot_lights.push_back(light);
-    }
-    for (TomlReader& entry : reader.tables("directional_lights")) {
-        DirectionalLight light;
-        entry.read("name", light.name);
-        light.direction = read_direction(entry, "direction", light.direction);
-        entry.require("irradiance", light.irradiance);
-        entry.finish();
-        scene.directional_lights.push_back(light);
-    }
-}
-
-template <typename Named>
-void add_or_replace(std::vector<Named>& items, Named item) {
-    std::erase_if(items, [&](const Named& other) { return other.name == item.name; });
-    items.push_back(std::move(item));
-}
-
-void read_view(TomlReader& entry, Scene& scene) {
-    std::string name;
-    glm::vec3 eye, target, up(0.0f, 1.0f, 0.0f);
-    float fov = 50.0f;
-    entry.require("name", name);
-    entry.require("eye", eye);
-    entry.require("target", target);
-    entry.read("up", up);
-    entry.read("vertical_fov", fov);
-    Camera camera = Camera::look_at(name, eye, target, glm::radians(fov), up);
-    entry.read("near", camera.near_plane);
-    entry.read("far", camera.far_plane);
-    entry.finish();
-    (void)View(camera, 1, 1);  // complains about planes and angles now rather than when it is used
-    add_or_replace(scene.cameras, std::move(camera));
-}
-
-void read_path(TomlReader& entry, Scene& scene) {
-    CameraPath path;
-    float fov = glm::degrees(path.vertical_fov);
-    entry.require("name", path.name);
-    entry.read("vertical_fov", fov);
-    entry.read("near", path.near_plane);
-    entry.read("far", path.far_plane);
-    path.vertical_fov = glm::radians(fov);
-    for (TomlReader& key : entry.tables("keys")) {
-        CameraKey camera_key;
-        key.require("time", camera_key.time);
-        key.require("eye", camera_key.eye);
-        key.require("target", camera_key.target);
-        key.finish();
-        path.keys.push_back(camera_key);
-    }
-    entry.finish();
-    (void)View(path.at(0.0f), 1, 1);  // complains about keys, planes and angles now
-    add_or_replace(scene.paths, std::move(path));
 }
 
 // Makes a scene usable that says nothing of views or lights.
@@ -266,7 +154,8 @@ Scene load_scene_text(std::string_view text, const std::filesystem::path& file, 
     Folders folders = {file.parent_path()};
     folders.insert(folders.end(), scenes_dirs.begin(), scenes_dirs.end());
 
-    const ImportOptions options = read_import_options(reader.table("import"));
+    ImportOptions options = read_import_options(reader.table("import"));
+    options.keep_apart = moving_instances(reader);
     std::string mesh, builtin;
     const bool has_mesh = reader.read("mesh", mesh), has_builtin = reader.read("builtin", builtin);
     if (has_mesh == has_builtin) reader.complain("mesh", "needs either mesh = \"FILE\" or builtin = \"NAME\"");
@@ -275,12 +164,13 @@ Scene load_scene_text(std::string_view text, const std::filesystem::path& file, 
     scene.name = file.stem().string();
     reader.read("name", scene.name);
     reader.read("description", scene.description);
-    read_materials(reader.table("materials"), scene);
+    read_materials(reader, scene);
     if (reader.has("ground")) add_ground(reader.table("ground"), scene);
     read_environment(reader.table("environment"), scene, file.string(), folders);
     read_lights(reader, scene);
-    for (TomlReader& entry : reader.tables("views")) read_view(entry, scene);
-    for (TomlReader& entry : reader.tables("paths")) read_path(entry, scene);
+    read_views(reader, scene);
+    read_paths(reader, scene);
+    read_motions(reader, scene);
     reader.finish();
     complete(scene);
     validate(scene);

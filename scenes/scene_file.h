@@ -14,23 +14,34 @@
 //     upside_down_textures = ["lion.jpg"]   # stored bottom row first
 //     flip_winding = false
 //     ignore_diffuse_colour_under_texture = false
+//     specular = false                      # true: MTL's Ks and Ns make specular lobes (scenes/import.h)
 //     [materials."brick"]                   # overrides; the name must exist
-//     base_colour = [0.7, 0.6, 0.5]         # also: metallic, roughness, emission, two_sided
+//     base_colour = [0.7, 0.6, 0.5]         # also: metallic, roughness, dielectric_reflectance, transmission, emission,
+//                                           # two_sided
 //     [ground]                              # a level two-sided square under an object that has none; all keys optional
 //     height = 0.0                          # also: centre = [x, any, z], size (metres, its side), base_colour
 //     [environment]
 //     radiance = [0.5, 0.6, 0.9]            # multiplies the image
 //     image = "environment/sky.hdr"         # equirectangular; found as the mesh is
 //     rotation = 0.0
-//     [[point_lights]]                      # name, position, intensity (W/sr)
+//     [[point_lights]]                      # name, position, intensity (W/sr), attenuation
+//     attenuation = { constant = 0.0, linear = 0.0, quadratic = 1.0 }
 //     [[spot_lights]]                       # name, position, direction or target, intensity, inner_angle, outer_angle
-//     (half angles)
-//     [[directional_lights]]                # name, direction, irradiance
-//     [[views]]                             # name, eye, target, up, vertical_fov, near, far
-//     [[paths]]                             # name, vertical_fov, near, far, keys = [{time = 0.0, eye = [..], target =
-//     [..]}, ..]
+//                                           # (half angles), attenuation
+//     [[directional_lights]]                # name, direction, irradiance, angular_radius (0: parallel; the sun: 0.266)
+//     [[views]]                             # name, eye, target, up, vertical_fov, near, far, aperture_radius (0: a
+//                                           # pinhole), focus_distance (else that of the target)
+//     [[paths]]                             # name, vertical_fov, near, far, aperture_radius, focus_distance (alike)
+//     keys = [{ time = 0.0, eye = [0, 1, 4], target = [0, 1, 0] }, { time = 2.0, ... }]
+//     [[motions]]
+//     instance = "fan"                      # all instances of this name move together
+//     interpolation = "smooth"              # or "linear"
+//     pivot = [0, 2, 0]                     # rotation and scale are about it; else the centre of their bounds
+//     keys = [{ time = 0.0 }, { time = 2.0, translation = [0, 0, 1], axis = [0, 1, 0], angle = 120.0, scale = 1.0 }]
 //
-// Views and paths of the mesh file are kept, those of the same name replaced. Lights are added to the mesh file's.
+// Views and paths of the mesh file are kept, those of the same name replaced. Lights are added to the mesh file's. Keys
+// of a motion are relative to where the object stands otherwise; a loaded scene stands at time 0. Instances are named as
+// the nodes or groups of the mesh file; those of one material that nothing moves are joined under its name.
 #pragma once
 
 #include <filesystem>

@@ -137,6 +137,15 @@ private:
         }
         check_fraction(glm::vec3(material.dielectric_reflectance), "dielectric reflectance", material);
         check_fraction(material.transmission, "transmission", material);
+        // 1e-5: what rounding makes of d * colour + (1 - d).
+        const glm::vec3 out = material.base_colour + material.transmission;
+        if (!glm::all(glm::lessThanEqual(out, glm::vec3(1.0f + 1e-5f)))) {
+            fail(
+                "material '{}': base colour and transmission add up to ({}, {}, {}); more light would leave than "
+                "arrives, "
+                "lower one of them",
+                material.name, out.x, out.y, out.z);
+        }
         check_light(material.emission, "material", material.name);
         check_texture_index(material.base_colour_texture, material);
         check_texture_index(material.metallic_roughness_texture, material);
