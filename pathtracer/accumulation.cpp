@@ -7,16 +7,10 @@
 #include <tbb/parallel_for.h>
 
 namespace plumb {
-namespace {
 
-void add_colour(double* sums, const glm::vec3& colour) {
-    sums[0] += colour.x, sums[1] += colour.y, sums[2] += colour.z;
-}
-
-}  // namespace
-
-Accumulation::Accumulation(int width, int height, const EstimationPlan& plan, bool emission_is_sampled)
-    : width_(width), height_(height), bounces_(plan.bounces) {
+Accumulation::Accumulation(int width, int height, const EstimationPlan& plan, bool emission_is_sampled,
+                           double light_level)
+    : width_(width), height_(height), bounces_(plan.indirect ? plan.bounces : 0) {
     int next = 0;
     const auto reserve = [&next](bool wanted, int channels) {
         const int first = wanted ? next : -1;
@@ -28,66 +22,100 @@ Accumulation::Accumulation(int width, int height, const EstimationPlan& plan, bo
     direct_ = reserve(plan.direct, 3);
     indirect_ = reserve(plan.indirect, 3 * bounces_);
     irradiance_ = reserve(plan.irradiance, 3);
+    reflection_ = reserve(plan.reflection, 3);
     channels_ = static_cast<std::size_t>(next);
     sums_.resize(channels_ * 2 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+    // 2^-32 of the light level: a sample of a thousandth of it is off by 1e-7 of itself, one as likely up as down. The
+    // ambient visibility, at most 1, is held to the same quantum or to 2^-32.
+    const double level = std::min(light_level > 0.0 ? light_level : 1.0, plan.ao ? 1.0 : HUGE_VAL);
+    quantum_ = std::exp2(std::ceil(std::log2(level)) - 32.0);
+    rounding_ = 0x1.8p52 * quantum_;
 }
 
-void Accumulation::add(std::size_t pixel, int sample, const glm::vec3& albedo, const glm::vec3& emission,
-                       const PathEstimate& estimate) {
-    double* sum = sums(pixel, sample & 1);
-    if (ao_ >= 0) sum[ao_] += estimate.ambient_visibility;
-    if (emission_ >= 0) add_colour(sum + emission_, emission);
-    if (direct_ >= 0) add_colour(sum + direct_, albedo * estimate.radiance[0]);
-    if (indirect_ < 0) return;
-    glm::vec3 incoming(0.0f);
-    for (int k = 1; k <= bounces_; ++k) {
-        incoming += estimate.radiance[k];
-        add_colour(sum + indirect_ + 3 * (k - 1), albedo * estimate.radiance[k]);
+void Accumulation::add(const SampleBatch& samples, int count, const BatchEstimate& estimate) {
+    for (int i = 0; i < count; ++i) {
+        double* sum = sums(samples.pixel[i], samples.half[i]);
+        if (ao_ >= 0) sum[ao_] += rounded(estimate.ambient_visibility[i]);
+        if (emission_ >= 0) add_colour(sum + emission_, samples.emission.get(i));
+        if (reflection_ >= 0) add_colour(sum + reflection_, estimate.reflection.get(i));
+        const glm::vec3 albedo = samples.albedo.get(i);
+        if (direct_ >= 0) add_colour(sum + direct_, albedo * estimate.radiance[0].get(i));
+        if (indirect_ < 0) continue;
+        glm::vec3 incoming(0.0f);
+        for (int k = 1; k <= bounces_; ++k) {
+            const glm::vec3 radiance = estimate.radiance[k].get(i);
+            incoming += radiance;
+            add_colour(sum + indirect_ + 3 * (k - 1), albedo * radiance);
+        }
+        if (irradiance_ >= 0) add_colour(sum + irradiance_, glm::pi<float>() * incoming);
     }
-    if (irradiance_ >= 0) add_colour(sum + irradiance_, glm::pi<float>() * incoming);
 }
 
-void Accumulation::add_background(std::size_t pixel, int sample, const glm::vec3& emission) {
-    double* sum = sums(pixel, sample & 1);
+void Accumulation::add_background(std::size_t pixel, int half, const glm::vec3& emission) {
+    double* sum = sums(pixel, half);
     if (ao_ >= 0) sum[ao_] += 1.0;
     if (emission_ >= 0) add_colour(sum + emission_, emission);
 }
 
-glm::vec3 Accumulation::half_mean(const StochasticPlane& plane, std::size_t pixel, int half, int samples,
-                                  const ExactParts& exact) const {
+void Accumulation::add(std::span<const double> other) {
+    for (std::size_t i = 0; i < sums_.size(); ++i) sums_[i] += other[i];
+}
+
+bool Accumulation::is_exact() const {
+    const double largest_exact = 0x1p53 * quantum_;
+    return std::ranges::all_of(sums_, [&](double sum) { return sum < largest_exact; });
+}
+
+Accumulation::Value Accumulation::value(const StochasticPlane& plane, std::size_t pixel, int samples,
+                                        const ExactParts& exact) const {
     using Kind = StochasticPlane::Kind;
-    const double* sum = sums(pixel, half);
     const double scale = 2.0 / samples;
-    const auto mean = [&](int first) {
-        return glm::vec3(scale * sum[first], scale * sum[first + 1], scale * sum[first + 2]);
+    const auto from_halves = [](const glm::vec3& a, const glm::vec3& b) { return Value{a, b, 0.5f * (a + b)}; };
+    const auto summed = [&](int first, const glm::vec3& always = glm::vec3(0.0f)) {
+        const double *a = sums(pixel, 0) + first, *b = sums(pixel, 1) + first;
+        return from_halves(always + glm::vec3(scale * a[0], scale * a[1], scale * a[2]),
+                           always + glm::vec3(scale * b[0], scale * b[1], scale * b[2]));
+    };
+    const auto added = [](const Value& one, const Value& other) {
+        return Value{one.half_a + other.half_a, one.half_b + other.half_b, one.mean + other.mean};
+    };
+    const auto constant = [](const std::vector<glm::vec3>& image, std::size_t at) {
+        return image.empty() ? glm::vec3(0.0f) : image[at];
     };
     const auto emission = [&] {
-        if (emission_ >= 0) return mean(emission_);
-        return exact.emission.empty() ? glm::vec3(0.0f) : exact.emission[pixel];
+        const glm::vec3 same = constant(exact.emission, pixel);
+        return emission_ >= 0 ? summed(emission_) : from_halves(same, same);
     };
-    const auto direct = [&] { return exact.direct.empty() ? mean(direct_) : mean(direct_) + exact.direct[pixel]; };
+    const auto direct = [&] { return summed(direct_, constant(exact.direct, pixel)); };
     const auto indirect = [&] {
-        glm::vec3 colour(0.0f);
-        for (int k = 1; k <= bounces_; ++k) colour += mean(indirect_ + 3 * (k - 1));
-        return colour;
+        Value sum{};
+        for (int k = 1; k <= bounces_; ++k) sum = added(sum, summed(indirect_ + 3 * (k - 1)));
+        return sum;
     };
     switch (plane.kind) {
-        case Kind::ao:
-            return glm::vec3(static_cast<float>(scale * sum[ao_]));
+        case Kind::ao: {
+            const auto a = static_cast<float>(scale * sums(pixel, 0)[ao_]);
+            const auto b = static_cast<float>(scale * sums(pixel, 1)[ao_]);
+            return from_halves(glm::vec3(a), glm::vec3(b));
+        }
         case Kind::emission:
             return emission();
         case Kind::direct:
             return direct();
         case Kind::indirect_bounce:
-            return mean(indirect_ + 3 * (plane.bounce - 1));
+            return summed(indirect_ + 3 * (plane.bounce - 1));
         case Kind::indirect:
             return indirect();
         case Kind::irradiance:
-            return mean(irradiance_);
-        case Kind::total:
-            return emission() + direct() + indirect();
+            return summed(irradiance_);
+        case Kind::reflection:
+            return reflection_ >= 0 ? summed(reflection_) : Value{};
+        case Kind::total: {
+            const Value diffuse = added(added(emission(), direct()), indirect());
+            return reflection_ >= 0 ? added(diffuse, summed(reflection_)) : diffuse;
+        }
     }
-    return glm::vec3(0.0f);
+    return {};
 }
 
 void Accumulation::write(const StochasticPlane& plane, int samples, const ExactParts& exact, Frame& frame) const {
@@ -100,13 +128,13 @@ void Accumulation::write(const StochasticPlane& plane, int samples, const ExactP
         for (int x = 0; x < width_; ++x) {
             const std::size_t pixel =
                 static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
-            const glm::vec3 a = half_mean(plane, pixel, 0, samples, exact),
-                            b = half_mean(plane, pixel, 1, samples, exact);
+            const Value at = value(plane, pixel, samples, exact);
             for (int c = 0; c < channels; ++c) {
-                half_a.at(x, y, c) = a[c];
-                half_b.at(x, y, c) = b[c];
-                mean.at(x, y, c) = 0.5f * (a[c] + b[c]);
-                variance.at(x, y, c) = 0.25f * (a[c] - b[c]) * (a[c] - b[c]);
+                const float difference = at.half_a[c] - at.half_b[c];
+                half_a.at(x, y, c) = at.half_a[c];
+                half_b.at(x, y, c) = at.half_b[c];
+                mean.at(x, y, c) = at.mean[c];
+                variance.at(x, y, c) = 0.25f * difference * difference;
             }
         }
     });
@@ -122,8 +150,8 @@ double Accumulation::relative_error(const StochasticPlane& plane, int samples, c
         for (int x = 0; x < width_; ++x) {
             const std::size_t pixel =
                 static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
-            const glm::dvec3 a = half_mean(plane, pixel, 0, samples, exact),
-                             b = half_mean(plane, pixel, 1, samples, exact);
+            const Value at = value(plane, pixel, samples, exact);
+            const glm::dvec3 a = at.half_a, b = at.half_b;
             const glm::dvec3 half_difference = 0.5 * (a - b), mean = 0.5 * (a + b);
             row.variance += glm::dot(half_difference, half_difference);
             // The noise in the square of the mean is taken off, so that a dark plane does not look brighter than it is.

@@ -1,7 +1,8 @@
 // Sums of samples per pixel, apart for the two halves, and the planes and error bars that follow from them.
 //
-// Samples of a pixel are added in their order, in double, by one thread: sums do not depend on how the work was split
-// over passes, threads or runs.
+// Sums are exact: each sample is rounded to a multiple of a quantum, far below the noise, and multiples of it add up in
+// double without rounding. So they do not depend on the order of the samples, nor on how these were split over passes,
+// threads, runs and machines.
 #pragma once
 
 #include <cstddef>
@@ -18,7 +19,7 @@ namespace plumb {
 
 // A plane that is estimated from samples.
 struct StochasticPlane {
-    enum class Kind { ao, emission, direct, indirect_bounce, indirect, irradiance, total };
+    enum class Kind { ao, emission, direct, indirect_bounce, indirect, irradiance, reflection, total };
     std::string name;
     Kind kind = Kind::ao;
     int bounce = 0;  // k of indirect.k
@@ -31,21 +32,35 @@ struct ExactParts {
     std::vector<glm::vec3> emission, direct;
 };
 
+// Which samples a batch of paths belongs to, and what multiplies what they found.
+struct SampleBatch {
+    Lanes<std::uint32_t> pixel;
+    Lanes<std::uint8_t> half;  // 0: A, 1: B
+    VectorLanes albedo, emission;
+};
+
 class Accumulation {
 public:
-    // `emission_is_sampled`: with anti-aliasing, where each sample sees another point.
-    Accumulation(int width, int height, const EstimationPlan& plan, bool emission_is_sampled);
+    // `emission_is_sampled`: where each sample sees another point. `light_level`: about the brightest radiance of the
+    // scene; sums stay exact up to two million times it.
+    Accumulation(int width, int height, const EstimationPlan& plan, bool emission_is_sampled, double light_level);
 
-    // Adds sample number `sample` (even: half A) of a pixel. `estimate` has to be that of the plan.
-    void add(std::size_t pixel, int sample, const glm::vec3& albedo, const glm::vec3& emission,
-             const PathEstimate& estimate);
+    // Adds the first `count` paths of a batch. `estimate` has to be that of the plan. Batches that are added at the
+    // same time must not share pixels.
+    void add(const SampleBatch& samples, int count, const BatchEstimate& estimate);
     // Adds a sample that met nothing: open sky.
-    void add_background(std::size_t pixel, int sample, const glm::vec3& emission);
+    void add_background(std::size_t pixel, int half, const glm::vec3& emission);
+    // Adds sums of the same plan, such as another shard's.
+    void add(std::span<const double> sums);
 
-    // Adds `plane` with half_a., half_b. and variance. to `frame`. `samples` is the number per pixel, even.
+    // Adds `plane` with half_a., half_b. and variance. to `frame`. `samples` is the number per pixel, even. The mean of
+    // `indirect` is the sum of the means of indirect.1, .2 and so on, that of `total` is emission + direct + indirect +
+    // reflection, added in this order in float; of all others it is that of the halves.
     void write(const StochasticPlane& plane, int samples, const ExactParts& exact, Frame& frame) const;
     // RMS standard error of the plane over its RMS; 0 for a black plane. The same bits whatever the number of threads.
     double relative_error(const StochasticPlane& plane, int samples, const ExactParts& exact) const;
+    // False once a sum has grown so large that its last bits depend on the order of the samples.
+    bool is_exact() const;
 
     std::span<double> values() { return sums_; }
     std::span<const double> values() const { return sums_; }
@@ -57,14 +72,22 @@ private:
     const double* sums(std::size_t pixel, int half) const {
         return &sums_[(2 * pixel + static_cast<std::size_t>(half)) * channels_];
     }
-    glm::vec3 half_mean(const StochasticPlane& plane, std::size_t pixel, int half, int samples,
-                        const ExactParts& exact) const;
+    double rounded(float value) const { return (static_cast<double>(value) + rounding_) - rounding_; }
+    void add_colour(double* sum, const glm::vec3& colour) const {
+        sum[0] += rounded(colour.x), sum[1] += rounded(colour.y), sum[2] += rounded(colour.z);
+    }
+    // Both halves and the mean of a plane at a pixel.
+    struct Value {
+        glm::vec3 half_a, half_b, mean;
+    };
+    Value value(const StochasticPlane& plane, std::size_t pixel, int samples, const ExactParts& exact) const;
 
     int width_, height_;
     int bounces_;
-    int ao_ = -1, emission_ = -1, direct_ = -1, indirect_ = -1,
-        irradiance_ = -1;  // first channel of each; -1: not summed
+    // First channel of each; -1: not summed.
+    int ao_ = -1, emission_ = -1, direct_ = -1, indirect_ = -1, irradiance_ = -1, reflection_ = -1;
     std::size_t channels_ = 0;
+    double quantum_, rounding_;  // a number so large that its last bit is worth a quantum
     std::vector<double> sums_;
 };
 

@@ -19,20 +19,21 @@ namespace plumb {
 namespace {
 
 constexpr std::array<char, 8> magic = {'P', 'L', 'U', 'M', 'B', 'R', 'E', 'F'};
-constexpr std::uint32_t format_version = 1;
+constexpr std::uint32_t format_version = 2;
 
 // As it lies in the file; the sums follow, then the checksum of all before it. Little-endian, as all machines we build
 // on.
 struct Header {
     std::array<char, 8> magic;
     std::uint32_t version;
-    std::int32_t samples;
+    std::int32_t begin, end;
+    std::uint32_t unused;
     std::uint64_t scene, view, settings;
     std::uint64_t rays;
     double seconds;
     std::uint64_t sum_count;
 };
-static_assert(std::is_trivially_copyable_v<Header> && sizeof(Header) == 64, "no padding may reach the file");
+static_assert(std::is_trivially_copyable_v<Header> && sizeof(Header) == 72, "no padding may reach the file");
 
 std::uint64_t checksum(const Header& header, std::span<const double> sums) {
     const std::uint64_t of_header = XXH3_64bits(&header, sizeof header);
@@ -50,6 +51,7 @@ void append_view(std::string& bytes, const View& view) {
         for (int row = 0; row < 4; ++row) append(bytes, view.camera().world_from_camera[column][row]);
     }
     append(bytes, view.tan_half().x), append(bytes, view.tan_half().y);
+    append(bytes, view.camera().aperture_radius), append(bytes, view.camera().focus_distance);
     append(bytes, view.camera().near_plane), append(bytes, view.camera().far_plane);
     append(bytes, view.width()), append(bytes, view.height());
 }
@@ -71,7 +73,13 @@ CheckpointKey CheckpointKey::of(const Scene& scene, const View& view, const Refe
     append(bytes, quantities.ao_radius), append(bytes, quantities.ao_falloff);
     append(bytes, quantities.bounces), append(bytes, quantities.indirect_radius);
     append(bytes, settings.seed), append(bytes, settings.minimum_separation), append(bytes, settings.antialias);
-    append(bytes, settings.emitter_sampling);
+    append(bytes, settings.emitter_sampling), append(bytes, settings.points), append(bytes, settings.roulette_after);
+    if (settings.oracle) {
+        append_view(bytes, settings.oracle->view);
+        append(bytes, settings.oracle->layers), append(bytes, settings.oracle->minimum_separation);
+    }
+    bytes += settings.view_at_shutter_opening ? "shutter" : "";
+    if (settings.view_at_shutter_opening) append_view(bytes, *settings.view_at_shutter_opening);
     if (settings.previous_view) append_view(bytes, *settings.previous_view);
     key.settings = hash(bytes);
     return key;
@@ -79,8 +87,8 @@ CheckpointKey CheckpointKey::of(const Scene& scene, const View& view, const Refe
 
 void write_checkpoint(const std::filesystem::path& path, const CheckpointKey& key, const CheckpointState& state,
                       std::span<const double> sums) {
-    const Header header{magic,        format_version, state.samples, key.scene,  key.view,
-                        key.settings, state.rays,     state.seconds, sums.size()};
+    const Header header{magic,    format_version, state.begin, state.end,     0,          key.scene,
+                        key.view, key.settings,   state.rays,  state.seconds, sums.size()};
     const std::uint64_t sum_of_all = checksum(header, sums);
     write_atomically(path, [&](const std::filesystem::path& temporary) {
         const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(temporary.c_str(), "wb"), &std::fclose);
@@ -119,9 +127,10 @@ CheckpointState read_checkpoint(const std::filesystem::path& path, const Checkpo
         !file.read(reinterpret_cast<char*>(&sum_of_all), sizeof sum_of_all)) {
         throw refuse("is cut off");
     }
-    if (sum_of_all != checksum(header, sums) || header.samples < 0 || header.samples % 2 != 0)
-        throw refuse("is damaged");
-    return {header.samples, header.rays, header.seconds};
+    const bool sensible =
+        header.begin >= 0 && header.begin % 2 == 0 && header.end >= header.begin && header.end % 2 == 0;
+    if (sum_of_all != checksum(header, sums) || !sensible) throw refuse("is damaged");
+    return {header.begin, header.end, header.rays, header.seconds};
 }
 
 }  // namespace plumb

@@ -1,4 +1,4 @@
-// An interrupted reference on disk: the sums so far and what they belong to.
+// A part of a reference on disk, an interrupted run or a shard: the sums so far and what they belong to.
 #pragma once
 
 #include <cstdint>
@@ -17,8 +17,9 @@ struct CheckpointKey {
     static CheckpointKey of(const Scene& scene, const View& view, const ReferenceSettings& settings);
 };
 
+// Samples begin to end - 1 of every pixel are in the sums.
 struct CheckpointState {
-    int samples = 0;
+    int begin = 0, end = 0;
     std::uint64_t rays = 0;
     double seconds = 0.0;
 };

@@ -27,15 +27,16 @@ inline void small_sine_cosine(float angle, float& sine, float& cosine) {
     cosine = 1.0f + x * (-0.5f + x * (1.0f / 24.0f + x * (-1.0f / 720.0f + x * (1.0f / 40320.0f))));
 }
 
-// Uniform on the unit disc; keeps neighbours neighbours. Source: Shirley, Chiu 1997.
+// Uniform on the unit disc; keeps neighbours neighbours. Without branches, for loops over lanes.
+//   Source: Shirley, Chiu 1997.
 inline glm::vec2 sample_disc(glm::vec2 u) {
-    const glm::vec2 offset = 2.0f * u - 1.0f;
-    if (offset.x == 0.0f && offset.y == 0.0f) return {0.0f, 0.0f};
-    const bool wide = std::abs(offset.x) > std::abs(offset.y);
-    const float radius = wide ? offset.x : offset.y, other = wide ? offset.y : offset.x;
+    const float across = 2.0f * u.x - 1.0f, along = 2.0f * u.y - 1.0f;
+    const bool wide = std::abs(across) > std::abs(along);
+    const float radius = wide ? across : along, other = wide ? along : across;
+    const float ratio = radius != 0.0f ? other / radius : 0.0f;
     float sine, cosine;
-    small_sine_cosine(glm::quarter_pi<float>() * (other / radius), sine, cosine);
-    return wide ? radius * glm::vec2(cosine, sine) : radius * glm::vec2(sine, cosine);
+    small_sine_cosine(glm::quarter_pi<float>() * ratio, sine, cosine);
+    return {radius * (wide ? cosine : sine), radius * (wide ? sine : cosine)};
 }
 
 // A direction about unit `normal` with density cos(theta) / pi.

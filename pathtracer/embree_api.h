@@ -13,44 +13,72 @@ enum class RayCoherence { coherent, incoherent };
 
 #if RTC_VERSION_MAJOR >= 4
 
-inline RTCRayQueryFlags embree_flags(RayCoherence coherence) {
-    return coherence == RayCoherence::coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
-}
-
-inline void embree_intersect(RTCScene scene, RTCRayHit& ray, RayCoherence coherence) {
-    RTCIntersectArguments arguments;
-    rtcInitIntersectArguments(&arguments);
-    arguments.flags = embree_flags(coherence);
-    rtcIntersect1(scene, &ray, &arguments);
-}
-
-inline void embree_occluded(RTCScene scene, RTCRay& ray, RayCoherence coherence) {
-    RTCOccludedArguments arguments;
-    rtcInitOccludedArguments(&arguments);
-    arguments.flags = embree_flags(coherence);
-    rtcOccluded1(scene, &ray, &arguments);
-}
+constexpr RTCSceneFlags filter_per_query = RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS;
+using EmbreeContext = RTCRayQueryContext;
 
 #else
 
-inline RTCIntersectContext embree_context(RayCoherence coherence) {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    context.flags = coherence == RayCoherence::coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT
-                                                        : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
-    return context;
-}
-
-inline void embree_intersect(RTCScene scene, RTCRayHit& ray, RayCoherence coherence) {
-    RTCIntersectContext context = embree_context(coherence);
-    rtcIntersect1(scene, &context, &ray);
-}
-
-inline void embree_occluded(RTCScene scene, RTCRay& ray, RayCoherence coherence) {
-    RTCIntersectContext context = embree_context(coherence);
-    rtcOccluded1(scene, &context, &ray);
-}
+constexpr RTCSceneFlags filter_per_query = RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
+using EmbreeContext = RTCIntersectContext;
 
 #endif
+
+// The options of queries; made once for many rays.
+class EmbreeQuery {
+public:
+    // `filter` is asked about every hit of scenes built with filter_per_query, and may ask user_of() back.
+    explicit EmbreeQuery(RayCoherence coherence, RTCFilterFunctionN filter = nullptr, const void* user = nullptr) {
+        context_.user = user;
+#if RTC_VERSION_MAJOR >= 4
+        rtcInitRayQueryContext(&context_);
+        rtcInitIntersectArguments(&intersect_);
+        rtcInitOccludedArguments(&occluded_);
+        unsigned flags =
+            coherence == RayCoherence::coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
+        if (filter) flags |= RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER;
+        intersect_.flags = occluded_.flags = static_cast<RTCRayQueryFlags>(flags);
+        intersect_.context = occluded_.context = &context_;
+        intersect_.filter = occluded_.filter = filter;
+#else
+        rtcInitIntersectContext(&context_);
+        context_.flags = coherence == RayCoherence::coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT
+                                                             : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+        context_.filter = filter;
+#endif
+    }
+    EmbreeQuery(const EmbreeQuery&) = delete;
+    EmbreeQuery& operator=(const EmbreeQuery&) = delete;
+
+    static const void* user_of(const RTCFilterFunctionNArguments* arguments) {
+        return static_cast<const Context*>(arguments->context)->user;
+    }
+
+#if RTC_VERSION_MAJOR >= 4
+    void intersect(RTCScene scene, RTCRayHit& ray) { rtcIntersect1(scene, &ray, &intersect_); }
+    void intersect(RTCScene scene, const int* valid, RTCRayHit8& rays) {
+        rtcIntersect8(valid, scene, &rays, &intersect_);
+    }
+    void occluded(RTCScene scene, RTCRay& ray) { rtcOccluded1(scene, &ray, &occluded_); }
+    void occluded(RTCScene scene, const int* valid, RTCRay16& rays) { rtcOccluded16(valid, scene, &rays, &occluded_); }
+#else
+    void intersect(RTCScene scene, RTCRayHit& ray) { rtcIntersect1(scene, &context_, &ray); }
+    void intersect(RTCScene scene, const int* valid, RTCRayHit8& rays) {
+        rtcIntersect8(valid, scene, &context_, &rays);
+    }
+    void occluded(RTCScene scene, RTCRay& ray) { rtcOccluded1(scene, &context_, &ray); }
+    void occluded(RTCScene scene, const int* valid, RTCRay16& rays) { rtcOccluded16(valid, scene, &context_, &rays); }
+#endif
+
+private:
+    struct Context : EmbreeContext {
+        const void* user = nullptr;
+    };
+
+    Context context_;
+#if RTC_VERSION_MAJOR >= 4
+    RTCIntersectArguments intersect_;
+    RTCOccludedArguments occluded_;
+#endif
+};
 
 }  // namespace plumb

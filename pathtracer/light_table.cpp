@@ -22,14 +22,16 @@ float spot_attenuation(const SpotLight& light, float cosine) {
     return t * t;
 }
 
-LightSample from_point(const glm::vec3& receiver, const glm::vec3& position) {
+LightSample from_point(const glm::vec3& receiver, const glm::vec3& position, const Attenuation& attenuation) {
     LightSample sample;
     const glm::vec3 offset = position - receiver;
     const float squared = glm::dot(offset, offset);
     if (!(squared > 0.0f)) return sample;
-    sample.direction = offset / std::sqrt(squared);
-    sample.end = position;
-    sample.radiance = glm::vec3(1.0f / squared);
+    const float distance = std::sqrt(squared);
+    sample.direction = offset / distance;
+    sample.shadow_ray = offset;
+    sample.farthest = 1.0f;
+    sample.radiance = glm::vec3(1.0f / attenuation.divisor(distance, squared));
     return sample;
 }
 
@@ -53,6 +55,7 @@ LightTable::LightTable(const TracedScene& traced, const EnvironmentDistribution&
     const Scene& scene = traced.scene();
     std::vector<double> powers;
     find_emitters(powers);
+    find_suns(powers);
     if (strategy == EmitterSampling::directions) std::fill(powers.begin(), powers.end(), 0.0);
 
     // Cosine-distributed rays are already ideal for a constant environment, so it is sampled only where nothing else
@@ -61,15 +64,20 @@ LightTable::LightTable(const TracedScene& traced, const EnvironmentDistribution&
     const bool image = has_environment && !environment.empty();
     const bool environment_sampled =
         has_environment && (strategy == EmitterSampling::lights || (image && strategy == EmitterSampling::both));
-    const double emitter_power = std::accumulate(powers.begin(), powers.end(), 0.0);
-    environment_index_ = powers.size();
-    powers.push_back(!environment_sampled ? 0.0 : emitter_power > 0.0 ? emitter_power : 1.0);
+    const double other_power = std::accumulate(powers.begin(), powers.end(), 0.0);
+    powers.push_back(!environment_sampled ? 0.0 : other_power > 0.0 ? other_power : 1.0);
     extended_ = DiscreteDistribution(powers);
-    lights_without_extent_ = scene.point_lights.size() + scene.spot_lights.size() + scene.directional_lights.size();
+    if (!extended_.empty()) {
+        std::size_t index = 0;
+        for (Emitter& emitter : emitters_) emitter.probability = static_cast<float>(extended_.probability(index++));
+        for (Sun& sun : suns_) sun.probability = static_cast<float>(extended_.probability(index++));
+        environment_probability_ = static_cast<float>(extended_.probability(index));
+    }
+    lights_without_extent_ = scene.point_lights.size() + scene.spot_lights.size() + parallel_.size();
 
     const bool rays = strategy != EmitterSampling::lights;
     rays_find_triangles_ = rays && !emitters_.empty();
-    rays_find_environment_ = rays && has_environment;
+    rays_find_background_ = rays && (has_environment || !suns_.empty());
 }
 
 void LightTable::find_emitters(std::vector<double>& powers) {
@@ -84,42 +92,80 @@ void LightTable::find_emitters(std::vector<double>& powers) {
         if (!(mean > 0.0)) continue;
         first_emitter_[instance] = static_cast<std::uint32_t>(emitters_.size());
         for (std::uint32_t i = 0; i < scene_.triangle_count(instance); ++i) {
-            const TracedTriangle triangle = scene_.triangle(instance, i);
-            const float area = 0.5f * glm::length(triangle.scaled_normal());
+            Emitter emitter;
+            emitter.instance = instance, emitter.triangle = i;
+            emitter.two_sided = material.two_sided;
+            emitter.varies = material.emission_texture != no_texture || material.alpha_mask;
+            emitter.emission = material.emission;
+            emitter.moves = scene_.moves(instance);
+            emitter = moved(emitter, now);
             // Where a texture varies, a few lookups guide the choice and the mean keeps every triangle possible.
             double emitted = mean;
             if (material.emission_texture != no_texture) {
                 constexpr float third = 1.0f / 3.0f, near = 0.6f, far = 0.2f;
                 for (const glm::vec2 at :
                      {glm::vec2(third), glm::vec2(far), glm::vec2(near, far), glm::vec2(far, near)}) {
-                    const glm::vec2 uv = triangle.uv(at.x, at.y);
-                    emitted += luminance(scene_.surface_sample(instance, uv).emission);
+                    emitted += luminance(scene_.surface_sample(instance, emitter.corners.uv(at.x, at.y)).emission);
                 }
                 emitted /= 5.0;
             }
-            const glm::vec3 normal = area > 0.0f ? triangle.scaled_normal() / (2.0f * area) : glm::vec3(0.0f);
-            emitters_.push_back({triangle, normal, triangle.error(), area, instance});
-            powers.push_back(glm::pi<double>() * area * emitted * (material.two_sided ? 2.0 : 1.0));
+            powers.push_back(glm::pi<double>() * emitter.area * emitted * (material.two_sided ? 2.0 : 1.0));
+            emitters_.push_back(emitter);
         }
     }
 }
 
-LightSample LightTable::sample_extended(const glm::vec3& receiver, const glm::vec3& normal, float pick,
-                                        glm::vec2 u) const {
-    const std::size_t index = extended_.sample(pick);
-    const double probability = extended_.probability(index);
-    return index == environment_index_ ? sample_environment(probability, normal, u)
-                                       : sample_emitter(emitters_[index], probability, receiver, u);
+void LightTable::find_suns(std::vector<double>& powers) {
+    const Scene& scene = scene_.scene();
+    const float radius = 0.5f * scene.bounds().diagonal();
+    for (std::size_t i = 0; i < scene.directional_lights.size(); ++i) {
+        const DirectionalLight& light = scene.directional_lights[i];
+        if (!(light.angular_radius > 0.0f)) {
+            parallel_.push_back(i);
+            continue;
+        }
+        // The irradiance of a disc of radiance L on a surface that faces it is L pi sin^2(radius).
+        const float sine = std::sin(light.angular_radius);
+        Sun sun;
+        sun.axis = -light.direction;
+        sun.radiance = light.irradiance / (glm::pi<float>() * sine * sine);
+        sun.height = cap_height(light.angular_radius);
+        sun.density = cone_density(sun.height);
+        suns_.push_back(sun);
+        powers.push_back(luminance(light.irradiance) * glm::pi<double>() * radius * radius);
+    }
+}
+
+// The emitter with what depends on where it stands.
+LightTable::Emitter LightTable::moved(const Emitter& emitter, float time) const {
+    Emitter there = emitter;
+    there.corners = scene_.triangle(emitter.instance, emitter.triangle, time);
+    const glm::vec3 scaled_normal = there.corners.scaled_normal();
+    there.area = 0.5f * glm::length(scaled_normal);
+    there.normal = there.area > 0.0f ? scaled_normal / (2.0f * there.area) : glm::vec3(0.0f);
+    there.error = glm::dot(glm::abs(there.normal), there.corners.error());
+    return there;
+}
+
+LightSample LightTable::sample_extended(const LightReceiver& receiver, float pick, glm::vec2 u) const {
+    std::size_t index = extended_.sample(pick);
+    if (index < emitters_.size()) {
+        const Emitter& emitter = emitters_[index];
+        return emitter.moves ? sample_emitter(moved(emitter, receiver.time), receiver, u)
+                             : sample_emitter(emitter, receiver, u);
+    }
+    index -= emitters_.size();
+    return index < suns_.size() ? sample_sun(suns_[index], u) : sample_environment(receiver.normal, u);
 }
 
 // Weighted reservoir sampling: each light replaces the one kept so far with probability weight / (sum so far), and the
 // random number is stretched to be used again.
-LightSample LightTable::sample_without_extent(const glm::vec3& receiver, const glm::vec3& normal, float pick) const {
+LightSample LightTable::sample_without_extent(const LightReceiver& receiver, float pick) const {
     LightSample kept;
     double sum = 0.0, kept_weight = 0.0, u = pick;
     for (std::size_t i = 0; i < lights_without_extent_; ++i) {
-        const LightSample light = light_without_extent(i, receiver);
-        const double weight = luminance(light.radiance) * std::max(0.0f, glm::dot(normal, light.direction));
+        const LightSample light = light_without_extent(i, receiver.origin);
+        const double weight = luminance(light.radiance) * std::max(0.0f, glm::dot(receiver.normal, light.direction));
         if (!(weight > 0.0)) continue;
         sum += weight;
         const double share = weight / sum;
@@ -134,33 +180,43 @@ LightSample LightTable::sample_without_extent(const glm::vec3& receiver, const g
     return kept;
 }
 
-LightSample LightTable::sample_emitter(const Emitter& emitter, double probability, const glm::vec3& receiver,
-                                       glm::vec2 u) const {
-    const TracedTriangle& triangle = emitter.corners;
-    const Material& material = scene_.material(emitter.instance);
+LightSample LightTable::sample_emitter(const Emitter& emitter, const LightReceiver& receiver, glm::vec2 u) const {
     const glm::vec2 at = sample_triangle(u);
-    const glm::vec3 position = triangle.point(at.x, at.y);
-    LightSample sample = from_point(receiver, position);
-    const glm::vec3& normal = emitter.normal;
-    const float cosine = -glm::dot(normal, sample.direction);
-    if (cosine == 0.0f || (cosine < 0.0f && !material.two_sided)) return {};
-    const glm::vec2 uv = triangle.uv(at.x, at.y);
-    if (material.alpha_mask && !scene_.scene().is_opaque(material, uv)) return {};
-    // The ray stops short of the emitter by the rounding errors of both ends.
-    const glm::vec3 error = emitter.error + 0x1p-20f * glm::abs(receiver);
-    const glm::vec3 side = cosine > 0.0f ? normal : -normal;
-    sample.end = position + glm::dot(glm::abs(normal), error) * side;
-    // From density per area to density per solid angle: d^2 / cosine; from_point left 1 / d^2 in `radiance`.
-    const float inverse_density = sample.radiance.x * std::abs(cosine) * emitter.area / static_cast<float>(probability);
+    const glm::vec3 offset = emitter.corners.point(at.x, at.y) - receiver.origin;
+    const float squared = glm::dot(offset, offset);
+    if (!(squared > 0.0f)) return {};
+    LightSample sample;
+    sample.direction = offset * (1.0f / std::sqrt(squared));
+    const float cosine = -glm::dot(emitter.normal, sample.direction);
+    if (cosine == 0.0f || (cosine < 0.0f && !emitter.two_sided)) return {};
+    // From density per area to density per solid angle: d^2 / cosine.
+    const float inverse_density = std::abs(cosine) * emitter.area / (squared * emitter.probability);
     if (!(inverse_density > 0.0f)) return {};
     sample.density = 1.0f / inverse_density;
-    sample.radiance = inverse_density * scene_.surface_sample(emitter.instance, uv).emission;
+    sample.radiance = inverse_density * emitter.emission;
+    if (emitter.varies) {
+        const glm::vec2 uv = emitter.corners.uv(at.x, at.y);
+        const Material& material = scene_.material(emitter.instance);
+        if (material.alpha_mask && !scene_.scene().is_opaque(material, uv)) return {};
+        sample.radiance = inverse_density * scene_.surface_sample(emitter.instance, uv).emission;
+    }
+    // The ray stops short of the emitter by the rounding errors of both ends.
+    const float step = emitter.error + coordinate_error * glm::dot(glm::abs(emitter.normal), glm::abs(receiver.origin));
+    sample.shadow_ray = offset + (cosine > 0.0f ? step : -step) * emitter.normal;
+    sample.farthest = 1.0f;
     return sample;
 }
 
-LightSample LightTable::sample_environment(double probability, const glm::vec3& normal, glm::vec2 u) const {
+LightSample LightTable::sample_sun(const Sun& sun, glm::vec2 u) const {
     LightSample sample;
-    sample.infinitely_far = true;
+    sample.direction = sample.shadow_ray = sample_cone(sun.axis, sun.height, u);
+    sample.density = sun.density * sun.probability;
+    sample.radiance = sun.radiance / sample.density;
+    return sample;
+}
+
+LightSample LightTable::sample_environment(const glm::vec3& normal, glm::vec2 u) const {
+    LightSample sample;
     if (environment_.empty()) {
         sample.direction = sample_cosine_hemisphere(normal, u);
         sample.density = glm::dot(normal, sample.direction) * glm::one_over_pi<float>();
@@ -168,52 +224,63 @@ LightSample LightTable::sample_environment(double probability, const glm::vec3& 
         const EnvironmentSample chosen = environment_.sample(u);
         sample.direction = chosen.direction, sample.density = chosen.density;
     }
-    sample.density *= static_cast<float>(probability);
+    sample.shadow_ray = sample.direction;
+    sample.density *= environment_probability_;
     if (!(sample.density > 0.0f)) return {};
     sample.radiance = scene_.scene().environment_radiance(sample.direction) / sample.density;
     return sample;
 }
 
-glm::vec3 LightTable::weighted_emission(const SurfaceHit& hit, const SurfacePoint& point, const glm::vec3& direction,
-                                        float cosine) const {
-    if (!rays_find_triangles_ || point.emission == glm::vec3(0.0f)) return glm::vec3(0.0f);
-    if (strategy_ == EmitterSampling::directions) return point.emission;
-    const std::size_t index = first_emitter_[hit.instance] + hit.triangle;
-    const float cosine_there = std::abs(glm::dot(point.geometric_normal, direction));
-    if (!(cosine_there > 0.0f)) return point.emission;
-    const float density = static_cast<float>(extended_.probability(index)) * hit.distance * hit.distance /
-                          (emitters_[index].area * cosine_there);
-    return point.emission * power_heuristic(cosine * glm::one_over_pi<float>(), density);
+float LightTable::emission_weight(const SurfaceHit& hit, const glm::vec3& geometric_normal, const glm::vec3& direction,
+                                  float density, float time) const {
+    if (!(density > 0.0f)) return 1.0f;
+    if (!rays_find_triangles_) return 0.0f;
+    if (strategy_ == EmitterSampling::directions) return 1.0f;
+    const Emitter& emitter = emitters_[first_emitter_[hit.instance] + hit.triangle];
+    const float area = emitter.moves ? moved(emitter, time).area : emitter.area;
+    const float cosine = std::abs(glm::dot(geometric_normal, direction));
+    if (!(cosine > 0.0f)) return 1.0f;
+    return power_heuristic(density, emitter.probability * hit.distance * hit.distance / (area * cosine));
 }
 
-glm::vec3 LightTable::weighted_environment(const glm::vec3& direction, float cosine) const {
-    if (!rays_find_environment_) return glm::vec3(0.0f);
-    const glm::vec3 radiance = scene_.scene().environment_radiance(direction);
-    const double probability = extended_.empty() ? 0.0 : extended_.probability(environment_index_);
-    if (!(probability > 0.0)) return radiance;
-    const float density = static_cast<float>(probability) * environment_.density(direction);
-    return radiance * power_heuristic(cosine * glm::one_over_pi<float>(), density);
+glm::vec3 LightTable::weighted_background(const glm::vec3& direction, float density) const {
+    const bool alone = !(density > 0.0f) || strategy_ == EmitterSampling::directions;
+    if (!alone && !rays_find_background_) return glm::vec3(0.0f);
+    const Scene& scene = scene_.scene();
+    glm::vec3 sum(0.0f);
+    if (!scene.environment.is_black()) {
+        sum = scene.environment_radiance(direction);
+        if (!alone && environment_probability_ > 0.0f) {
+            sum *= power_heuristic(density, environment_probability_ * environment_.density(direction));
+        }
+    }
+    for (const Sun& sun : suns_) {
+        // By the chord, which is 2 (1 - cosine) squared: the cosine of a small angle has no digits left to tell.
+        const glm::vec3 chord = direction - sun.axis;
+        if (glm::dot(chord, chord) > 2.0f * sun.height) continue;
+        sum += sun.radiance * (alone ? 1.0f : power_heuristic(density, sun.probability * sun.density));
+    }
+    return sum;
 }
 
 LightSample LightTable::light_without_extent(std::size_t index, const glm::vec3& receiver) const {
     const Scene& scene = scene_.scene();
     if (index < scene.point_lights.size()) {
         const PointLight& light = scene.point_lights[index];
-        LightSample sample = from_point(receiver, light.position);
+        LightSample sample = from_point(receiver, light.position, light.attenuation);
         sample.radiance *= light.intensity;
         return sample;
     }
     index -= scene.point_lights.size();
     if (index < scene.spot_lights.size()) {
         const SpotLight& light = scene.spot_lights[index];
-        LightSample sample = from_point(receiver, light.position);
+        LightSample sample = from_point(receiver, light.position, light.attenuation);
         sample.radiance *= light.intensity * spot_attenuation(light, -glm::dot(light.direction, sample.direction));
         return sample;
     }
-    const DirectionalLight& light = scene.directional_lights[index - scene.spot_lights.size()];
+    const DirectionalLight& light = scene.directional_lights[parallel_[index - scene.spot_lights.size()]];
     LightSample sample;
-    sample.direction = -light.direction;
-    sample.infinitely_far = true;
+    sample.direction = sample.shadow_ray = -light.direction;
     sample.radiance = light.irradiance;
     return sample;
 }

@@ -1,65 +1,85 @@
-// One sample of every stochastic quantity at one surface point.
+// One sample of every stochastic quantity at each of many surface points.
 //
-// Follows one path of cosine-distributed directions from x. At each vertex k = 0..K it gathers the radiance that left a
-// light and reached the vertex in one segment, by next-event estimation and, where emitters can be met, by the path's
-// own next ray. What vertex k gathers, carried back to x, is `direct` for k = 0 and `indirect.k` for k > 0. The first
-// ray also serves the ambient visibility.
+// Follows one path of directions from each point x, a batch of paths side by side. At each vertex k = 0..K a path
+// gathers the radiance that left a light and reached the vertex in one segment, by next-event estimation and, where
+// emitters can be met, by the path's own next ray. What vertex k gathers, carried back to x, is `direct` for k = 0 and
+// `indirect.k` for k > 0. The first ray also serves the ambient visibility. Where x has a specular lobe, or lets light
+// pass, a second path leaves it that way and brings `reflection`.
+//   Light that passes a transparent pane is dimmed but not scattered: the pane is no vertex, nor the end of a segment.
 //   Good for: all planes in one go. Nothing is traced that no wanted plane needs.
 #pragma once
 
-#include <array>
 #include <cstdint>
 
 #include <glm/glm.hpp>
 
 #include "frames/quantities.h"
 #include "pathtracer/light_table.h"
-#include "pathtracer/sample_sequence.h"
+#include "pathtracer/path_batch.h"
+#include "pathtracer/scattering.h"
 #include "pathtracer/traced_scene.h"
+#include "scenes/specular_albedo.h"
 
 namespace plumb {
 
-constexpr int most_bounces = 64;
-
-// What has to be estimated; follows from the planes that are wanted.
+// What has to be estimated; follows from the planes that are wanted and from what the scene holds.
 struct EstimationPlan {
-    bool ao = false, direct = false, indirect = false, irradiance = false;
-    int bounces = 0;  // 0 where no indirect light is wanted
+    bool ao = false, direct = false, indirect = false, irradiance = false, reflection = false;
+    int bounces = 0;  // 0 where neither indirect light nor reflection is wanted
     float ao_radius = 1.0f;
     Falloff ao_falloff = Falloff::quadratic;
     float indirect_radius = infinite_distance;
     // Lights without extent reach x without randomness through pixel centres; they are added exactly, once per pixel.
     bool exact_lights_at_first_point = true;
+    int roulette_after = 0;  // bounces that every path is given; 0: no roulette
 
-    bool traces_anything() const { return ao || direct || indirect; }
-};
-
-struct PathEstimate {
-    float ambient_visibility = 1.0f;
-    std::array<glm::vec3, most_bounces + 1> radiance;  // by vertex; x's albedo / pi included as if x's albedo were 1
+    bool traces_anything() const { return ao || direct || indirect || reflection; }
 };
 
 class PathIntegrator {
 public:
-    PathIntegrator(const TracedScene& scene, const LightTable& lights, const EstimationPlan& plan)
-        : scene_(scene), lights_(lights), plan_(plan) {}
+    // `specular_albedo` may be null where no surface has a specular lobe. `layers`: what rays that look for surfaces
+    // may meet (all: null); the way from a surface to a light is always that of the whole scene.
+    PathIntegrator(const TracedScene& scene, const LightTable& lights, const SpecularAlbedo* specular_albedo,
+                   const OracleLayers* layers, const EstimationPlan& plan)
+        : scene_(scene), lights_(lights), specular_albedo_(specular_albedo), layers_(layers), plan_(plan) {}
 
-    // Entries 0..bounces of estimate.radiance are set. Returns how many rays were traced.
-    int estimate(const SurfacePoint& x, const SampleSequence& sequence, PathEstimate& estimate) const;
+    // Makes `x`, seen against `direction`, the start of path number `path`, which must be the batch's next one. Returns
+    // the albedo of x's diffuse lobe, by which `radiance` is to be multiplied.
+    glm::vec3 add_start(const SurfacePoint& x, const glm::vec3& direction, const SampleIndex& sample, float time,
+                        VertexBatch& batch) const;
 
-    // The part of `direct` that lights without extent give, with x's albedo; deterministic. Counts rays into `rays`.
+    // Sets all of `estimate` that the plan wants, radiance for vertices 0..bounces.
+    void estimate(const VertexBatch& starts, BatchEstimate& estimate) const;
+
+    // The part of `direct` that lights without extent give, as if x's albedo were 1; deterministic. Counts rays.
     glm::vec3 exact_direct(const SurfacePoint& x, std::uint64_t& rays) const;
 
-    // The dimension of SampleSequence that spreads primary rays over the pixel.
-    static constexpr std::uint32_t pixel_dimension = 0;
+    // The dimensions of the sequence that choose a primary ray.
+    static constexpr std::uint32_t pixel_dimension = 0, lens_dimension = 1, time_dimension = 2;
 
 private:
-    glm::vec3 next_event(const SurfacePoint& point, int vertex, const SampleSequence& sequence, int& rays) const;
-    glm::vec3 reflected(const SurfacePoint& point, const LightSample& light, int& rays) const;
+    enum class Start { diffuse, specular };
+    struct ScatteredRays;
+
+    // At the first vertex the specular side alone, later all lobes but what passes, which is decided before.
+    Scattering scattering(const VertexBatch& vertices, int lane, int vertex) const;
+    void next_event(const VertexBatch& vertices, int vertex, Start start, VectorLanes& sum, int& rays) const;
+    void connect(const VertexBatch& vertices, const Lanes<int>& lanes, const RayBatch& shadow_rays,
+                 const VectorLanes& light, VectorLanes& sum, int& rays) const;
+    void scatter(const VertexBatch& vertices, int vertex, Start start, ScatteredRays& scattered) const;
+    void pass_panes(const VertexBatch& vertices, int vertex, Start start, ScatteredRays& scattered, HitBatch& hits,
+                    int& rays) const;
+    bool survives_roulette(const SampleIndex& sample, int vertex, Start start, glm::vec3& throughput) const;
+    void follow(VertexBatch* vertices, VertexBatch* next, Start start, BatchEstimate& estimate) const;
+    glm::vec3 specular_albedo(const SpecularSurface& surface, const glm::vec3& shading_normal,
+                              const glm::vec3& to_viewer) const;
     float obscurance(float distance) const { return evaluate_falloff(plan_.ao_falloff, distance, plan_.ao_radius); }
 
     const TracedScene& scene_;
     const LightTable& lights_;
+    const SpecularAlbedo* specular_albedo_;
+    const OracleLayers* layers_;
     EstimationPlan plan_;
 };
 

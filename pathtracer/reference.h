@@ -1,9 +1,13 @@
 // The ground truth of one view: what is asked for, how it is controlled, and the path tracer that answers.
 //
 // Computes the planes of Quantities by tracing paths with Embree: light sampling and direction sampling joined by
-// multiple importance sampling at every vertex, Owen-scrambled Sobol points, no clamping, no roulette. Surfaces are
-// Lambertian with SurfaceSample::albedo; what the metallic part of a material reflects is not part of any plane here.
-//   Good for: diffuse light of any kind. Bad for: caustics (there are none) and light that squeezes through small gaps.
+// multiple importance sampling at every vertex, Owen-scrambled Sobol points, no clamping. Surfaces have the lobes of
+// scenes/material.h: Lambertian, GGX, and thin transparency. At the first point they are kept apart: `direct` and
+// `indirect` are what its diffuse lobe reflects, `reflection` is what its specular lobe reflects and what passes
+// straight through it; at later points all lobes scatter. Directional lights with an angular size are seen in mirrors,
+// but not by the camera.
+//   Good for: diffuse and glossy light of any kind. Bad for: caustics, which only paths from the eye look for, and
+//   light that squeezes through small gaps.
 //
 // At a pixel that sees nothing: depth is infinity, normal and albedo 0, ao 1, and the environment's radiance is
 // `emission`.
@@ -15,9 +19,12 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "frames/frame.h"
 #include "frames/quantities.h"
+#include "pathtracer/sample_points.h"
+#include "pathtracer/time_span.h"
 #include "scenes/camera.h"
 #include "scenes/scene.h"
 
@@ -31,9 +38,19 @@ enum class EmitterSampling {
     both,        // joined by the power heuristic (Veach 1997, section 9.2)
 };
 
+// Restricts what rays may meet to what a view's G-buffer holds: the best that any method could make of it. The way from
+// a surface to a light stays that of the whole scene, as shadow maps have it; where nothing is met there is the
+// environment.
+struct OracleSettings {
+    View view;                        // with its guard band
+    int layers = 1;                   // 0: all that lies in the view's frustum
+    float minimum_separation = 0.1f;  // metres along the view axis between layers
+};
+
 struct ReferenceSettings {
     Quantities quantities;
     int samples = 256;          // per pixel, even; the most where a target error is set
+    int first_sample = 0;       // even; the samples rendered are first_sample to samples - 1
     double target_error = 0.0;  // stop early once the relative standard error of every stochastic plane (RMS standard
                                 // error over the RMS of the plane) is below it; 0: never
     std::uint64_t seed = 1;
@@ -42,6 +59,14 @@ struct ReferenceSettings {
         false;  // primary rays spread over the pixel instead of through its centre; the G-buffer's never do
     std::optional<View> previous_view;  // where the camera was in the frame before (motion); none: it stood still
     EmitterSampling emitter_sampling = EmitterSampling::both;
+    SamplePoints points = SamplePoints::sobol;
+    // Bounces that every path is given; then it goes on with the probability of its throughput (Russian roulette),
+    // which changes no expectation. 0: every path goes on to the last bounce.
+    int roulette_after = 8;
+    std::optional<OracleSettings> oracle;
+    // Where the camera was when the shutter opened; it is open over the path tracer's time span, until the camera is
+    // where the view has it. None: an instant. Primary rays move linearly. The G-buffer's planes are those of the end.
+    std::optional<View> view_at_shutter_opening;
 };
 
 struct ReferenceProgress {
@@ -72,6 +97,9 @@ struct ReferenceResult {
     double seconds = 0.0;    // over all runs that led here
     std::uint64_t rays = 0;  // over all runs that led here
     bool complete = true;    // false: stopped; resume from the checkpoint
+    // True: the very bits would come out of any split of the samples over shards. False where a pixel is so much
+    // brighter than the lights would have it that its sum was rounded.
+    bool exact = true;
 };
 
 // What a pixel's ray meets, found exactly.
@@ -82,10 +110,14 @@ struct LayerSettings {
     const View* previous_view = nullptr;  // for motion; none: the camera stood still
 };
 
+class RayRecorder;
+
 class PathTracer {
 public:
-    // Keeps a reference to the scene. Throws SceneError for indices that point nowhere.
-    explicit PathTracer(const Scene& scene);
+    // Keeps a reference to the scene. Instances that move do so over `span`: while the shutter is open, or from the
+    // frame before to this one; what knows no time sees them at its end. An empty span: as they stand in the scene.
+    // Throws SceneError for indices that point nowhere.
+    explicit PathTracer(const Scene& scene, const TimeSpan& span = {});
     ~PathTracer();
     PathTracer(PathTracer&&) noexcept;
 
@@ -93,6 +125,17 @@ public:
     // was interrupted. Throws ReferenceError for settings that make no sense and for a checkpoint of another run.
     ReferenceResult render(const View& view, const ReferenceSettings& settings,
                            const ReferenceControl& control = {}) const;
+
+    // Renders settings.first_sample to settings.samples into `file`, to be merged. False where it was stopped.
+    bool render_shard(const View& view, const ReferenceSettings& settings, const std::filesystem::path& file,
+                      const ReferenceControl& control = {}) const;
+    // The result of all samples of the shards, which must follow each other from 0 on: the bits of one run. Throws
+    // ReferenceError for gaps, overlaps, and shards of another scene, view or settings.
+    ReferenceResult merge(const View& view, const ReferenceSettings& settings,
+                          const std::vector<std::filesystem::path>& shards, int threads = 0) const;
+
+    // Every ray that render() traces by batches is told to `recorder` (null: none), for benchmarks.
+    void set_recorder(RayRecorder* recorder);
 
     // Planes depth, normal, albedo, position (world), motion (pixels: position in the previous view minus position now;
     // of a point at infinity where nothing is met; infinite where the point was behind the previous camera), emission,

@@ -5,12 +5,16 @@
 // by hashed scramblings and shuffles, so the halves are independent estimates. Any point is found at once from (seed,
 // pixel, sample, dimension): nothing depends on the order of work.
 //   Sources: Burley 2020, "Practical Hash-based Owen Scrambling"; Laine, Karras 2011 for the permutation, with
-//   constants by Vegdahl 2021, "Building a Better LK Hash"; the mixers are those of SplitMix64 (Steele et al. 2014).
+//   constants by Vegdahl 2021, "Building a Better LK Hash"; the mixers are those of SplitMix64 (Steele et al. 2014)
+//   and, for 32 bits, "lowbias32" (Wellons 2018, "Prospecting for Hash Functions").
 #pragma once
 
 #include <cstdint>
 
 #include <glm/glm.hpp>
+
+#include "pathtracer/lanes.h"
+#include "pathtracer/sample_points.h"
 
 namespace plumb {
 
@@ -19,6 +23,12 @@ inline std::uint64_t mix_bits(std::uint64_t x) {
     x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ull;
     x = (x ^ (x >> 27)) * 0x94d049bb133111ebull;
     return x ^ (x >> 31);
+}
+
+inline std::uint32_t mix_word(std::uint32_t x) {
+    x = (x ^ (x >> 16)) * 0x7feb352du;
+    x = (x ^ (x >> 15)) * 0x846ca68bu;
+    return x ^ (x >> 16);
 }
 
 inline std::uint32_t reverse_bits(std::uint32_t x) {
@@ -53,41 +63,70 @@ inline std::uint32_t second_sobol_dimension(std::uint32_t reversed_index) {
 // [0, 1), never 1: the lowest 8 bits are dropped.
 inline float to_unit_interval(std::uint32_t x) { return static_cast<float>(x >> 8) * 0x1p-24f; }
 
+// Names one sample of one pixel: the key tells (seed, pixel, half) from all others.
+struct SampleIndex {
+    std::uint32_t key_low = 0, key_high = 0;
+    std::uint32_t reversed_index = 0;  // within the half, bits reversed
+};
+
+// The point of `sample` in a dimension given as mix_word(dimension). All in 32 bits and without branches, so that a
+// loop over lanes becomes vector code.
+inline glm::vec2 sobol_point(const SampleIndex& sample, std::uint32_t mixed_dimension) {
+    const auto scrambled = [](std::uint32_t x, std::uint32_t seed) {
+        return to_unit_interval(reverse_bits(laine_karras_permutation(reverse_bits(x), seed)));
+    };
+    const std::uint32_t a = mix_word(mix_word(sample.key_low ^ mixed_dimension) + sample.key_high);
+    const std::uint32_t b = mix_word(a + 0x9e3779b9u), c = mix_word(b + 0x9e3779b9u);
+    // The shuffled index, reversed, is the first Sobol dimension.
+    const std::uint32_t index = laine_karras_permutation(sample.reversed_index, a);
+    return {scrambled(index, b), scrambled(second_sobol_dimension(index), c)};
+}
+
 class SampleSequence {
 public:
-    SampleSequence(std::uint64_t seed, int x, int y)
-        : pixel_key_(mix_bits(mix_bits(seed) ^ (static_cast<std::uint64_t>(static_cast<std::uint32_t>(y)) << 32 |
+    SampleSequence(std::uint64_t seed, int x, int y, SamplePoints points = SamplePoints::sobol)
+        : points_(points),
+          pixel_key_(mix_bits(mix_bits(seed) ^ (static_cast<std::uint64_t>(static_cast<std::uint32_t>(y)) << 32 |
                                                 static_cast<std::uint32_t>(x)))) {}
 
     // Even samples belong to half A, odd ones to half B.
     void start_sample(int sample) {
-        half_key_ = mix_bits(pixel_key_ + static_cast<std::uint64_t>(sample & 1));
-        reversed_index_ = reverse_bits(static_cast<std::uint32_t>(sample >> 1));
+        // Independent points are each the first of a sequence of its own.
+        const bool sobol = points_ == SamplePoints::sobol;
+        const std::uint64_t key = mix_bits(pixel_key_ + static_cast<std::uint64_t>(sobol ? sample & 1 : sample));
+        index_ = {static_cast<std::uint32_t>(key), static_cast<std::uint32_t>(key >> 32),
+                  sobol ? reverse_bits(static_cast<std::uint32_t>(sample >> 1)) : 0};
     }
 
-    glm::vec2 point(std::uint32_t dimension) const {
-        const std::uint64_t a = mix_bits(half_key_ + dimension);
-        const std::uint64_t b = mix_bits(a);
-        // The shuffled index, reversed, is the first Sobol dimension.
-        const std::uint32_t index = laine_karras_permutation(reversed_index_, static_cast<std::uint32_t>(a));
-        return {scrambled(index, static_cast<std::uint32_t>(a >> 32)),
-                scrambled(second_sobol_dimension(index), static_cast<std::uint32_t>(b))};
-    }
-
-    float number(std::uint32_t dimension) const {
-        const std::uint64_t a = mix_bits(half_key_ + dimension);
-        const std::uint32_t index = laine_karras_permutation(reversed_index_, static_cast<std::uint32_t>(a));
-        return scrambled(index, static_cast<std::uint32_t>(a >> 32));
-    }
+    const SampleIndex& index() const { return index_; }
+    glm::vec2 point(std::uint32_t dimension) const { return sobol_point(index_, mix_word(dimension)); }
+    float number(std::uint32_t dimension) const { return point(dimension).x; }
 
 private:
-    static float scrambled(std::uint32_t x, std::uint32_t seed) {
-        return to_unit_interval(reverse_bits(laine_karras_permutation(reverse_bits(x), seed)));
-    }
-
+    SamplePoints points_;
     std::uint64_t pixel_key_;
-    std::uint64_t half_key_ = 0;
-    std::uint32_t reversed_index_ = 0;
+    SampleIndex index_;
 };
+
+// The samples of many paths side by side.
+struct SampleLanes {
+    Lanes<std::uint32_t> key_low, key_high, reversed_index;
+
+    SampleIndex get(int lane) const { return {key_low[lane], key_high[lane], reversed_index[lane]}; }
+    void set(int lane, const SampleIndex& sample) {
+        key_low[lane] = sample.key_low, key_high[lane] = sample.key_high;
+        reversed_index[lane] = sample.reversed_index;
+    }
+};
+
+// SampleSequence::point for the first `count` lanes.
+inline void sample_points(const SampleLanes& samples, int count, std::uint32_t dimension, Lanes<float>& x,
+                          Lanes<float>& y) {
+    const std::uint32_t mixed_dimension = mix_word(dimension);
+    for (int i = 0; i < count; ++i) {
+        const glm::vec2 point = sobol_point(samples.get(i), mixed_dimension);
+        x[i] = point.x, y[i] = point.y;
+    }
+}
 
 }  // namespace plumb

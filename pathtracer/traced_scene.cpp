@@ -1,22 +1,23 @@
 #include "pathtracer/traced_scene.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstring>
 
 #include <fmt/format.h>
 #include <glm/gtc/matrix_inverse.hpp>
 #include <tbb/task_arena.h>
 
+#include "pathtracer/oracle_layers.h"
+#include "pathtracer/ray_recorder.h"
 #include "pathtracer/reference_error.h"
+#include "scenes/ggx.h"
 #include "scenes/scene_error.h"
 
 namespace plumb {
 namespace {
-
-// Sixteen half units in the last place: three roundings make an interpolated point (pbrt-v4, section 6.8.5), the rest
-// is for the differences and the cross product in Embree's test of a triangle that is not a sliver.
-constexpr float coordinate_error = 0x1p-20f;
 
 void check_embree(RTCDevice device, const Scene& scene, std::string_view step) {
     const RTCError error = rtcGetDeviceError(device);
@@ -53,16 +54,51 @@ void check_indices(const Scene& scene) {
     }
 }
 
-}  // namespace
+// Where between two poses a time lies.
+struct MotionStep {
+    int first;
+    float weight;
 
-glm::vec3 TracedTriangle::error() const {
-    const auto largest = [](float x, float y, float z) {
-        return std::max(std::abs(x), std::max(std::abs(y), std::abs(z)));
-    };
-    return coordinate_error * glm::vec3(largest(a.x, b.x, c.x), largest(a.y, b.y, c.y), largest(a.z, b.z, c.z));
+    MotionStep(float time, int steps) {
+        const float at = std::clamp(time, 0.0f, 1.0f) * static_cast<float>(steps - 1);
+        first = std::min(static_cast<int>(at), steps - 2);
+        weight = at - static_cast<float>(first);
+    }
+    glm::vec3 mix(const glm::vec3& from, const glm::vec3& to) const { return (1.0f - weight) * from + weight * to; }
+};
+
+struct PointGeometry {
+    glm::vec3 position, ray_origin, geometric_normal, shading_normal;
+    bool back;
+};
+
+// Without branches, for loops over lanes. A zero `normal_sum` (none, or opposite normals that cancel) leaves the
+// face's.
+inline PointGeometry point_geometry(const TracedTriangle& triangle, float u, float v, const glm::vec3& normal_sum,
+                                    const glm::vec3& ray_direction) {
+    PointGeometry point;
+    point.position = triangle.point(u, v);
+    const glm::vec3 scaled_normal = triangle.scaled_normal();
+    const glm::vec3 normal = scaled_normal * (1.0f / std::sqrt(glm::dot(scaled_normal, scaled_normal)));
+    const float squared_length = glm::dot(normal_sum, normal_sum);
+    const float inverse_length = squared_length > 0.0f ? 1.0f / std::sqrt(squared_length) : 0.0f;
+    const glm::vec3 smooth = squared_length > 0.0f ? normal_sum * inverse_length : normal;
+    const float side = glm::dot(normal, ray_direction) > 0.0f ? -1.0f : 1.0f;
+    point.back = side < 0.0f;
+    point.geometric_normal = side * normal;
+    point.shading_normal = side * smooth;
+    const float step = glm::dot(glm::abs(normal), triangle.error());
+    point.ray_origin = point.position + step * point.geometric_normal;
+    return point;
 }
 
-TracedScene::TracedScene(const Scene& scene) : scene_(scene), parts_(scene.instances.size()) {
+SpecularSurface specular_side(const SurfaceSample& sample) {
+    return {sample.specular_f0, sample.specular_f90, ggx_alpha(sample.roughness), sample.transmission};
+}
+
+}  // namespace
+
+TracedScene::TracedScene(const Scene& scene, const TimeSpan& span) : scene_(scene), parts_(scene.instances.size()) {
     check_indices(scene);
     device_ = rtcNewDevice(nullptr);
     if (!device_) {
@@ -73,49 +109,76 @@ TracedScene::TracedScene(const Scene& scene) : scene_(scene), parts_(scene.insta
     // Robust: no ray slips between two triangles that share an edge.
     rtcSetSceneFlags(embree_scene_, RTC_SCENE_FLAG_ROBUST);
     rtcSetSceneBuildQuality(embree_scene_, RTC_BUILD_QUALITY_HIGH);
-    for (std::uint32_t i = 0; i < parts_.size(); ++i) add(i);
+    for (std::uint32_t i = 0; i < parts_.size(); ++i) add(i, span);
     rtcCommitScene(embree_scene_);
     check_embree(device_, scene_, "building its tree");
 }
 
 TracedScene::~TracedScene() {
+    if (layered_scene_) rtcReleaseScene(layered_scene_);
     rtcReleaseScene(embree_scene_);
     rtcReleaseDevice(device_);
 }
 
-void TracedScene::add(std::uint32_t index) {
+void TracedScene::set_positions(RTCGeometry geometry, const Instance& instance, Part& part, const TimeSpan& span) {
+    const Mesh& mesh = scene_.meshes[instance.mesh];
+    part.normals.reserve(mesh.normals.size() * static_cast<std::size_t>(part.steps));
+    rtcSetGeometryTimeStepCount(geometry, static_cast<unsigned>(part.steps));
+    for (int step = 0; step < part.steps; ++step) {
+        const double at = part.steps == 1 ? 1.0 : static_cast<double>(step) / (part.steps - 1);
+        const glm::mat4 pose =
+            part.steps == 1 ? instance.world_from_object : instance.pose(span.begin + at * (span.end - span.begin));
+        auto* positions =
+            static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, static_cast<unsigned>(step),
+                                                        RTC_FORMAT_FLOAT3, 3 * sizeof(float), mesh.positions.size()));
+        check_embree(device_, scene_, fmt::format("taking instance '{}'", instance.name));
+        for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+            const glm::vec3 world(pose * glm::vec4(mesh.positions[i], 1.0f));
+            for (int axis = 0; axis < 3; ++axis) positions[3 * i + axis] = world[axis];
+        }
+        part.positions.push_back(positions);
+        const glm::mat3 normal_matrix = glm::inverseTranspose(glm::mat3(pose));
+        for (const glm::vec3& normal : mesh.normals) part.normals.push_back(glm::normalize(normal_matrix * normal));
+    }
+}
+
+void TracedScene::add(std::uint32_t index, const TimeSpan& span) {
+    // Poses of a moving instance over the time span: a quarter turn between two of them bulges by less than a fiftieth
+    // of its radius.
+    constexpr int poses = 9;
     const Instance& instance = scene_.instances[index];
     const Mesh& mesh = scene_.meshes[instance.mesh];
     Part& part = parts_[index];
     part.scene = &scene_;
     part.material = &scene_.materials[mesh.material];
     part.triangle_count = static_cast<std::uint32_t>(mesh.triangles.size());
+    part.vertex_count = mesh.positions.size();
+    part.steps = instance.moves() && span.end > span.begin ? poses : 1;
     part.uvs = mesh.uvs.empty() ? nullptr : &mesh.uvs;
     part.has_textures = part.material->base_colour_texture != no_texture ||
                         part.material->metallic_roughness_texture != no_texture ||
                         part.material->emission_texture != no_texture;
+    part.is_plain = !part.material->has_specular_lobe() && !part.material->is_transparent();
+    has_specular_lobes_ |= part.material->has_specular_lobe();
+    has_transparency_ |= part.material->is_transparent();
+    // A texture only lowers the roughness.
+    const bool may_be_mirror =
+        part.material->has_specular_lobe() &&
+        (part.material->metallic_roughness_texture != no_texture || ggx_alpha(part.material->roughness) == 0.0f);
+    has_delta_lobes_ |= may_be_mirror || part.material->is_transparent();
     if (!part.has_textures) part.constant = scene_.surface(*part.material, {});
 
     RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* positions = static_cast<float*>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), mesh.positions.size()));
+    set_positions(geometry, instance, part, span);
     auto* triangles = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
         geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), mesh.triangles.size()));
     check_embree(device_, scene_, fmt::format("taking instance '{}'", instance.name));
-    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
-        const glm::vec3 world(instance.world_from_object * glm::vec4(mesh.positions[i], 1.0f));
-        for (int axis = 0; axis < 3; ++axis) positions[3 * i + axis] = world[axis];
-    }
     const bool mirrored = glm::determinant(glm::mat3(instance.world_from_object)) < 0.0f;
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
         glm::uvec3 corners = mesh.triangles[i];
         if (mirrored) std::swap(corners.y, corners.z);
         for (int corner = 0; corner < 3; ++corner) triangles[3 * i + corner] = corners[corner];
     }
-    const glm::mat3 normal_matrix = glm::inverseTranspose(glm::mat3(instance.world_from_object));
-    part.normals.reserve(mesh.normals.size());
-    for (const glm::vec3& normal : mesh.normals) part.normals.push_back(glm::normalize(normal_matrix * normal));
-    part.positions = positions;
     part.triangles = triangles;
 
     rtcSetGeometryUserData(geometry, &part);
@@ -128,10 +191,58 @@ void TracedScene::add(std::uint32_t index) {
     rtcReleaseGeometry(geometry);
 }
 
+// The same geometry once more, in a tree whose queries may bring a filter: such queries cost more, also without one.
+RTCScene TracedScene::scene_for_layers() const {
+    std::call_once(layered_scene_made_, [this] {
+        layered_scene_ = rtcNewScene(device_);
+        rtcSetSceneFlags(layered_scene_, static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | filter_per_query));
+        rtcSetSceneBuildQuality(layered_scene_, RTC_BUILD_QUALITY_HIGH);
+        for (unsigned i = 0; i < parts_.size(); ++i) {
+            rtcAttachGeometryByID(layered_scene_, rtcGetGeometry(embree_scene_, i), i);
+        }
+        rtcCommitScene(layered_scene_);
+        check_embree(device_, scene_, "building its tree for the layers of a view");
+    });
+    return layered_scene_;
+}
+
+void TracedScene::Part::corners(std::uint32_t triangle, float time, TracedTriangle& corners) const {
+    const std::uint32_t* indices = triangles + 3 * triangle;
+    const auto position = [](const float* from, std::uint32_t vertex) {
+        return glm::vec3(from[3 * vertex], from[3 * vertex + 1], from[3 * vertex + 2]);
+    };
+    if (steps == 1) {
+        corners.a = position(positions[0], indices[0]), corners.b = position(positions[0], indices[1]),
+        corners.c = position(positions[0], indices[2]);
+        return;
+    }
+    const MotionStep at(time, steps);
+    const auto moved = [&](std::uint32_t vertex) {
+        return at.mix(position(positions[at.first], vertex), position(positions[at.first + 1], vertex));
+    };
+    corners.a = moved(indices[0]), corners.b = moved(indices[1]), corners.c = moved(indices[2]);
+}
+
+glm::vec3 TracedScene::Part::normal_sum(std::uint32_t triangle, float u, float v, float time) const {
+    if (normals.empty()) return glm::vec3(0.0f);
+    const std::uint32_t* indices = triangles + 3 * triangle;
+    const auto interpolated = [&](const glm::vec3* from) {
+        return (1.0f - u - v) * from[indices[0]] + u * from[indices[1]] + v * from[indices[2]];
+    };
+    if (steps == 1) return interpolated(normals.data());
+    const MotionStep at(time, steps);
+    const glm::vec3* first = normals.data() + static_cast<std::size_t>(at.first) * vertex_count;
+    return at.mix(interpolated(first), interpolated(first + vertex_count));
+}
+
 glm::vec2 TracedScene::Part::uv(std::uint32_t triangle, float u, float v) const {
     if (!uvs) return {0.0f, 0.0f};
     const std::uint32_t* corners = triangles + 3 * triangle;
     return (1.0f - u - v) * (*uvs)[corners[0]] + u * (*uvs)[corners[1]] + v * (*uvs)[corners[2]];
+}
+
+SurfaceSample TracedScene::Part::sample(const SurfaceHit& hit) const {
+    return has_textures ? scene->surface(*material, uv(hit.triangle, hit.u, hit.v)) : constant;
 }
 
 void TracedScene::reject_holes(const RTCFilterFunctionNArguments* arguments) {
@@ -145,72 +256,171 @@ void TracedScene::reject_holes(const RTCFilterFunctionNArguments* arguments) {
     }
 }
 
+void TracedScene::reject_what_layers_lack(const RTCFilterFunctionNArguments* arguments) {
+    const auto& layers = *static_cast<const OracleLayers*>(EmbreeQuery::user_of(arguments));
+    const unsigned count = arguments->N;
+    RTCRayN* rays = arguments->ray;
+    for (unsigned i = 0; i < count; ++i) {
+        if (arguments->valid[i] != -1) continue;
+        const float distance = RTCRayN_tfar(rays, count, i);
+        const glm::vec3 point(RTCRayN_org_x(rays, count, i) + distance * RTCRayN_dir_x(rays, count, i),
+                              RTCRayN_org_y(rays, count, i) + distance * RTCRayN_dir_y(rays, count, i),
+                              RTCRayN_org_z(rays, count, i) + distance * RTCRayN_dir_z(rays, count, i));
+        if (!layers.contain(point)) arguments->valid[i] = 0;
+    }
+}
+
+SurfaceHit TracedScene::intersect(EmbreeQuery& query, RTCScene scene, const glm::vec3& origin,
+                                  const glm::vec3& direction, float nearest, float farthest, float time) {
+    RTCRayHit ray;
+    ray.ray.org_x = origin.x, ray.ray.org_y = origin.y, ray.ray.org_z = origin.z;
+    ray.ray.dir_x = direction.x, ray.ray.dir_y = direction.y, ray.ray.dir_z = direction.z;
+    ray.ray.tnear = nearest, ray.ray.tfar = farthest;
+    ray.ray.time = time, ray.ray.mask = 0xffffffffu, ray.ray.id = 0, ray.ray.flags = 0;
+    ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    query.intersect(scene, ray);
+    if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
+    return {ray.hit.geomID, ray.hit.primID, ray.hit.u, ray.hit.v, ray.ray.tfar};
+}
+
 SurfaceHit TracedScene::intersect(const glm::vec3& origin, const glm::vec3& direction, float nearest, float farthest,
-                                  RayCoherence coherence) const {
-    RTCRayHit query;
-    query.ray.org_x = origin.x, query.ray.org_y = origin.y, query.ray.org_z = origin.z;
-    query.ray.dir_x = direction.x, query.ray.dir_y = direction.y, query.ray.dir_z = direction.z;
-    query.ray.tnear = nearest, query.ray.tfar = farthest;
-    query.ray.time = 0.0f, query.ray.mask = 0xffffffffu, query.ray.id = 0, query.ray.flags = 0;
-    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    embree_intersect(embree_scene_, query, coherence);
-    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
-    return {query.hit.geomID, query.hit.primID, query.hit.u, query.hit.v, query.ray.tfar};
+                                  RayCoherence coherence, float time) const {
+    EmbreeQuery query(coherence);
+    return intersect(query, embree_scene_, origin, direction, nearest, farthest, time);
 }
 
-bool TracedScene::occluded(const glm::vec3& origin, const glm::vec3& direction, float farthest,
-                           RayCoherence coherence) const {
-    RTCRay ray;
-    ray.org_x = origin.x, ray.org_y = origin.y, ray.org_z = origin.z;
-    ray.dir_x = direction.x, ray.dir_y = direction.y, ray.dir_z = direction.z;
-    ray.tnear = positive_distance, ray.tfar = farthest;
-    ray.time = 0.0f, ray.mask = 0xffffffffu, ray.id = 0, ray.flags = 0;
-    embree_occluded(embree_scene_, ray, coherence);
-    return ray.tfar < 0.0f;  // Embree sets minus infinity where something is in the way
+void TracedScene::intersect(const RayBatch& rays, HitBatch& hits, RayCoherence coherence,
+                            const OracleLayers* layers) const {
+    if (recorder_) recorder_->add_nearest(rays);
+    EmbreeQuery query(coherence, layers ? &TracedScene::reject_what_layers_lack : nullptr, layers);
+    const RTCScene scene = layers ? scene_for_layers() : embree_scene_;
+    for (int i = 0; i < rays.count; ++i) {
+        hits[i] = intersect(query, scene, rays.origin.get(i), rays.direction.get(i), rays.nearest[i], rays.farthest[i],
+                            rays.time[i]);
+    }
 }
 
-SurfacePoint TracedScene::surface_point(const SurfaceHit& hit, const glm::vec3& ray_direction) const {
-    const Part& part = parts_[hit.instance];
-    const std::uint32_t* corners = part.triangles + 3 * hit.triangle;
-    TracedTriangle triangle;
-    triangle.a = part.position(corners[0]), triangle.b = part.position(corners[1]),
-    triangle.c = part.position(corners[2]);
-
-    SurfacePoint point;
-    point.position = triangle.point(hit.u, hit.v);
-    point.position_error = triangle.error();
-    point.geometric_normal = glm::normalize(triangle.scaled_normal());
-    point.shading_normal = point.geometric_normal;
-    if (!part.normals.empty()) {
-        const glm::vec3 sum = (1.0f - hit.u - hit.v) * part.normals[corners[0]] + hit.u * part.normals[corners[1]] +
-                              hit.v * part.normals[corners[2]];
-        const float length = glm::length(sum);
-        if (length > 0.0f) point.shading_normal = sum / length;  // opposite corner normals cancel: the face's serves
-    }
-    const bool back = glm::dot(point.geometric_normal, ray_direction) > 0.0f;
-    if (back) {
-        point.geometric_normal = -point.geometric_normal;
-        point.shading_normal = -point.shading_normal;
-    }
-    if (!back || part.material->two_sided) {
-        if (part.has_textures) {
-            const SurfaceSample sample = part.scene->surface(*part.material, part.uv(hit.triangle, hit.u, hit.v));
-            point.albedo = sample.albedo, point.emission = sample.emission;
-        } else {
-            point.albedo = part.constant.albedo, point.emission = part.constant.emission;
+void TracedScene::occluded(const RayBatch& rays, Lanes<std::uint8_t>& blocked, const OracleLayers* layers) const {
+    if (recorder_) recorder_->add_any(rays);
+    EmbreeQuery query(RayCoherence::incoherent, layers ? &TracedScene::reject_what_layers_lack : nullptr, layers);
+    const RTCScene scene = layers ? scene_for_layers() : embree_scene_;
+    constexpr int width = 16;
+    for (int first = 0; first < rays.count; first += width) {
+        alignas(64) std::array<int, width> valid;
+        RTCRay16 packet;
+        const auto copy = [first](float* to, const Lanes<float>& from) {
+            std::memcpy(to, &from[first], width * sizeof(float));
+        };
+        copy(packet.org_x, rays.origin.x), copy(packet.org_y, rays.origin.y), copy(packet.org_z, rays.origin.z);
+        copy(packet.dir_x, rays.direction.x), copy(packet.dir_y, rays.direction.y);
+        copy(packet.dir_z, rays.direction.z), copy(packet.tnear, rays.nearest), copy(packet.tfar, rays.farthest);
+        copy(packet.time, rays.time);
+        for (int i = 0; i < width; ++i) {
+            valid[i] = first + i < rays.count ? -1 : 0;
+            packet.mask[i] = 0xffffffffu, packet.id[i] = 0, packet.flags[i] = 0;
         }
+        query.occluded(scene, valid.data(), packet);
+        // Embree sets minus infinity where something is in the way.
+        for (int i = 0; i < width; ++i) blocked[first + i] = packet.tfar[i] < 0.0f ? 1 : 0;
+    }
+}
+
+void TracedScene::transmittance(const RayBatch& rays, VectorLanes& fraction) const {
+    if (!has_transparency_) {
+        Lanes<std::uint8_t> blocked;
+        occluded(rays, blocked);
+        for (int i = 0; i < rays.count; ++i) fraction.set(i, glm::vec3(blocked[i] ? 0.0f : 1.0f));
+        return;
+    }
+    EmbreeQuery query(RayCoherence::incoherent);
+    for (int i = 0; i < rays.count; ++i) {
+        const glm::vec3 origin = rays.origin.get(i), direction = rays.direction.get(i);
+        glm::vec3 passing(1.0f);
+        float from = rays.nearest[i];
+        while (passing != glm::vec3(0.0f)) {
+            const SurfaceHit hit =
+                intersect(query, embree_scene_, origin, direction, from, rays.farthest[i], rays.time[i]);
+            if (hit.missed()) break;
+            passing *= specular_surface(hit, direction, rays.time[i]).transmission;
+            from = std::nextafter(hit.distance, infinite_distance);
+        }
+        fraction.set(i, passing);
+    }
+}
+
+SurfacePoint TracedScene::surface_point(const SurfaceHit& hit, const glm::vec3& ray_direction, float time) const {
+    const Part& part = parts_[hit.instance];
+    TracedTriangle corners;
+    part.corners(hit.triangle, time, corners);
+    const PointGeometry geometry =
+        point_geometry(corners, hit.u, hit.v, part.normal_sum(hit.triangle, hit.u, hit.v, time), ray_direction);
+    SurfacePoint point;
+    point.position = geometry.position;
+    point.ray_origin = geometry.ray_origin;
+    point.geometric_normal = geometry.geometric_normal;
+    point.shading_normal = geometry.shading_normal;
+    if (!geometry.back || part.material->two_sided) {
+        const SurfaceSample sample = part.sample(hit);
+        point.albedo = sample.albedo, point.emission = sample.emission;
+        if (!part.is_plain) point.specular = specular_side(sample);
     }
     return point;
 }
 
-TracedTriangle TracedScene::triangle(std::uint32_t instance, std::uint32_t index) const {
+void TracedScene::surface_points(const RayBatch& rays, const HitBatch& hits, const Lanes<int>& lanes, int count,
+                                 SurfaceLanes& points) const {
+    VectorLanes a, b, c, normals, directions;
+    Lanes<float> u, v, back;
+    for (int i = 0; i < count; ++i) {
+        const SurfaceHit& hit = hits[lanes[i]];
+        const Part& part = parts_[hit.instance];
+        TracedTriangle corners;
+        part.corners(hit.triangle, rays.time[lanes[i]], corners);
+        a.set(i, corners.a), b.set(i, corners.b), c.set(i, corners.c);
+        normals.set(i, part.normal_sum(hit.triangle, hit.u, hit.v, rays.time[lanes[i]]));
+        directions.set(i, rays.direction.get(lanes[i]));
+        u[i] = hit.u, v[i] = hit.v;
+    }
+    for (int i = 0; i < count; ++i) {
+        const PointGeometry point =
+            point_geometry({a.get(i), b.get(i), c.get(i), {}, {}, {}}, u[i], v[i], normals.get(i), directions.get(i));
+        points.ray_origin.set(i, point.ray_origin);
+        points.geometric_normal.set(i, point.geometric_normal);
+        points.shading_normal.set(i, point.shading_normal);
+        back[i] = point.back ? 1.0f : 0.0f;
+    }
+    for (int i = 0; i < count; ++i) {
+        const SurfaceHit& hit = hits[lanes[i]];
+        const Part& part = parts_[hit.instance];
+        if (back[i] != 0.0f && !part.material->two_sided) {
+            points.albedo.set(i, glm::vec3(0.0f)), points.emission.set(i, glm::vec3(0.0f));
+        } else if (part.has_textures) {
+            const SurfaceSample sample = part.sample(hit);
+            points.albedo.set(i, sample.albedo), points.emission.set(i, sample.emission);
+        } else {
+            points.albedo.set(i, part.constant.albedo), points.emission.set(i, part.constant.emission);
+        }
+    }
+}
+
+SpecularSurface TracedScene::specular_surface(const SurfaceHit& hit, const glm::vec3& ray_direction, float time) const {
+    const Part& part = parts_[hit.instance];
+    if (part.is_plain) return {};
+    if (!part.material->two_sided) {
+        TracedTriangle corners;
+        part.corners(hit.triangle, time, corners);
+        if (glm::dot(corners.scaled_normal(), ray_direction) > 0.0f) return {};
+    }
+    return specular_side(part.sample(hit));
+}
+
+TracedTriangle TracedScene::triangle(std::uint32_t instance, std::uint32_t index, float time) const {
     const Part& part = parts_[instance];
-    const std::uint32_t* corners = part.triangles + 3 * index;
     TracedTriangle triangle;
-    triangle.a = part.position(corners[0]), triangle.b = part.position(corners[1]),
-    triangle.c = part.position(corners[2]);
+    part.corners(index, time, triangle);
     if (part.uvs) {
+        const std::uint32_t* corners = part.triangles + 3 * index;
         triangle.uv_a = (*part.uvs)[corners[0]], triangle.uv_b = (*part.uvs)[corners[1]],
         triangle.uv_c = (*part.uvs)[corners[2]];
     }

@@ -2,66 +2,26 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
-#include <memory>
+#include <mutex>
 #include <vector>
 
 #include <glm/glm.hpp>
 
 #include "pathtracer/embree_api.h"
+#include "pathtracer/ray_batch.h"
+#include "pathtracer/surface_hit.h"
+#include "pathtracer/time_span.h"
 #include "scenes/scene.h"
 
 namespace plumb {
 
-constexpr float infinite_distance = std::numeric_limits<float>::infinity();
-// Any hit but one at the very origin, which Embree would count: the point may lie exactly in a coordinate plane, where
-// it has no rounding error and its ray no distance from its own triangle.
-constexpr float positive_distance = std::numeric_limits<float>::min();
-
-// Where a ray met a triangle; 20 bytes, so that the hits of a whole view can be kept.
-struct SurfaceHit {
-    static constexpr std::uint32_t nothing = 0xffffffffu;
-
-    std::uint32_t instance = nothing;
-    std::uint32_t triangle = nothing;
-    float u = 0.0f, v = 0.0f;  // barycentric weights of the second and third corner
-    float distance = infinite_distance;
-
-    bool missed() const { return instance == nothing; }
-};
-
-// What lies at a hit, seen along a ray.
-struct SurfacePoint {
-    glm::vec3 position{0.0f};
-    glm::vec3 position_error{0.0f};    // bound of the rounding error per axis, of the position and of Embree's own test
-    glm::vec3 geometric_normal{0.0f};  // unit, on the ray's side
-    glm::vec3 shading_normal{0.0f};    // unit, negated with the geometric normal
-    glm::vec3 albedo{0.0f};            // 0 on the back of a one-sided surface, as is the emission
-    glm::vec3 emission{0.0f};
-
-    // Where a ray that leaves on the side of the geometric normal starts. Scale-free: the step is the error's extent
-    // along the normal (pbrt-v4, section 6.8.6).
-    glm::vec3 ray_origin() const {
-        return position + glm::dot(glm::abs(geometric_normal), position_error) * geometric_normal;
-    }
-};
-
-// A corner-by-corner view of one triangle, counter-clockwise seen from its front also under mirroring transforms.
-struct TracedTriangle {
-    glm::vec3 a, b, c;
-    glm::vec2 uv_a{0.0f}, uv_b{0.0f}, uv_c{0.0f};
-
-    glm::vec3 point(float u, float v) const { return (1.0f - u - v) * a + u * b + v * c; }
-    glm::vec2 uv(float u, float v) const { return (1.0f - u - v) * uv_a + u * uv_b + v * uv_c; }
-    glm::vec3 scaled_normal() const { return glm::cross(b - a, c - a); }  // twice the area long
-    // Rounding errors of a point on the triangle, and of Embree's test of that triangle near that point, grow with the
-    // corners' coordinates, not with the point's.
-    glm::vec3 error() const;
-};
+class OracleLayers;
+class RayRecorder;
 
 class TracedScene {
 public:
-    explicit TracedScene(const Scene& scene);
+    // Instances that move are built with their motion over `span`; times of rays run from 0 (its begin) to 1 (its end).
+    explicit TracedScene(const Scene& scene, const TimeSpan& span = {});
     ~TracedScene();
     TracedScene(const TracedScene&) = delete;
     TracedScene& operator=(const TracedScene&) = delete;
@@ -69,19 +29,40 @@ public:
     const Scene& scene() const { return scene_; }
     const Material& material(std::uint32_t instance) const { return *parts_[instance].material; }
     std::uint32_t triangle_count(std::uint32_t instance) const { return parts_[instance].triangle_count; }
+    bool has_specular_lobes() const { return has_specular_lobes_; }
+    bool has_transparency() const { return has_transparency_; }
+    bool has_delta_lobes() const { return has_delta_lobes_; }  // mirrors or transparency, perhaps
+    bool moves(std::uint32_t instance) const { return parts_[instance].steps > 1; }
 
     // The nearest hit with nearest <= distance <= farthest, in units of the direction's length.
     SurfaceHit intersect(const glm::vec3& origin, const glm::vec3& direction, float nearest = positive_distance,
-                         float farthest = infinite_distance, RayCoherence coherence = RayCoherence::incoherent) const;
-    bool occluded(const glm::vec3& origin, const glm::vec3& direction, float farthest = infinite_distance,
-                  RayCoherence coherence = RayCoherence::incoherent) const;
+                         float farthest = infinite_distance, RayCoherence coherence = RayCoherence::incoherent,
+                         float time = now) const;
 
-    SurfacePoint surface_point(const SurfaceHit& hit, const glm::vec3& ray_direction) const;
-    TracedTriangle triangle(std::uint32_t instance, std::uint32_t index) const;
+    // Many rays at once. Where `layers` is given, only what they contain is met.
+    void intersect(const RayBatch& rays, HitBatch& hits, RayCoherence coherence = RayCoherence::incoherent,
+                   const OracleLayers* layers = nullptr) const;
+    // Sets blocked[i] to whether anything lies between 0 and the ray's farthest point.
+    void occluded(const RayBatch& rays, Lanes<std::uint8_t>& blocked, const OracleLayers* layers = nullptr) const;
+    // What fraction of light passes: 0 where something opaque is in the way, else the product over the panes.
+    void transmittance(const RayBatch& rays, VectorLanes& fraction) const;
+
+    SurfacePoint surface_point(const SurfaceHit& hit, const glm::vec3& ray_direction, float time = now) const;
+    // The same for the rays listed in `lanes`, the i-th of them into lane i of `points`, without specular parts.
+    void surface_points(const RayBatch& rays, const HitBatch& hits, const Lanes<int>& lanes, int count,
+                        SurfaceLanes& points) const;
+    // The specular side of the surface at a hit, 0 on the back of a one-sided one; all 0 for most materials, as
+    // is_plain tells without looking it up.
+    SpecularSurface specular_surface(const SurfaceHit& hit, const glm::vec3& ray_direction, float time = now) const;
+    bool is_plain(std::uint32_t instance) const { return parts_[instance].is_plain; }
+
+    TracedTriangle triangle(std::uint32_t instance, std::uint32_t index, float time = now) const;
     // Textures looked up; the same for all points where the material has none.
     SurfaceSample surface_sample(std::uint32_t instance, const glm::vec2& uv) const;
 
     RTCScene embree_scene() const { return embree_scene_; }
+    // Every ray of a batch is told to `recorder` (null: none), for benchmarks.
+    void set_recorder(RayRecorder* recorder) { recorder_ = recorder; }
 
 private:
     // One instance; Embree owns positions and triangles. With a mirroring transform the second and third corner are
@@ -89,27 +70,39 @@ private:
     struct Part {
         const Scene* scene = nullptr;
         const Material* material = nullptr;
-        const float* positions = nullptr;             // 3 per vertex
+        std::vector<const float*> positions;          // 3 per vertex, for each step of the motion
         const std::uint32_t* triangles = nullptr;     // 3 per triangle
-        std::vector<glm::vec3> normals;               // world space; empty: face normals
+        std::vector<glm::vec3> normals;               // world space, step after step; empty: face normals
         const std::vector<glm::vec2>* uvs = nullptr;  // null where there are none
         std::uint32_t triangle_count = 0;
+        std::size_t vertex_count = 0;
+        int steps = 1;              // poses over the time span, evenly spaced; in between vertices move linearly
         bool has_textures = false;  // false: `constant` holds for every point
+        bool is_plain = true;       // neither a specular lobe nor transparency
         SurfaceSample constant;
 
-        glm::vec3 position(std::uint32_t vertex) const {
-            return {positions[3 * vertex], positions[3 * vertex + 1], positions[3 * vertex + 2]};
-        }
+        void corners(std::uint32_t triangle, float time, TracedTriangle& corners) const;
+        glm::vec3 normal_sum(std::uint32_t triangle, float u, float v, float time) const;  // 0 where there are none
         glm::vec2 uv(std::uint32_t triangle, float u, float v) const;
+        SurfaceSample sample(const SurfaceHit& hit) const;
     };
 
-    void add(std::uint32_t index);
+    void add(std::uint32_t index, const TimeSpan& span);
+    void set_positions(RTCGeometry geometry, const Instance& instance, Part& part, const TimeSpan& span);
+    RTCScene scene_for_layers() const;
+    static SurfaceHit intersect(EmbreeQuery& query, RTCScene scene, const glm::vec3& origin, const glm::vec3& direction,
+                                float nearest, float farthest, float time);
     static void reject_holes(const RTCFilterFunctionNArguments* arguments);
+    static void reject_what_layers_lack(const RTCFilterFunctionNArguments* arguments);
 
     const Scene& scene_;
     RTCDevice device_ = nullptr;
     RTCScene embree_scene_ = nullptr;
     std::vector<Part> parts_;
+    bool has_specular_lobes_ = false, has_transparency_ = false, has_delta_lobes_ = false;
+    RayRecorder* recorder_ = nullptr;
+    mutable RTCScene layered_scene_ = nullptr;  // made when the first oracle asks
+    mutable std::once_flag layered_scene_made_;
 };
 
 }  // namespace plumb

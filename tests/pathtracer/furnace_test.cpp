@@ -65,6 +65,7 @@ TEST(Furnace, MoreBouncesApproachEmissionOverOneMinusAlbedo) {
     const Scene scene = furnace(0.5f, 1.0f, glm::mat4(1.0f));
     auto settings = settings_for({"total"}, 16, 20);
     settings.emitter_sampling = EmitterSampling::directions;
+    settings.roulette_after = 0;  // chance would be the only noise
     const Frame frame = PathTracer(scene).render(view_of({0, 0, 0}, {0.4f, -1, 0.3f}, 1.5f), settings).frame;
     // Le / (1 - albedo) = 2; what is cut off after 20 bounces is 2 * 0.5^22 = 5e-7.
     for (const float value : frame.plane("total").values()) EXPECT_NEAR(value, 2.0f, 1e-5f);

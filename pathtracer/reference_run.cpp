@@ -1,0 +1,386 @@
+#include "pathtracer/reference_run.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <numeric>
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include "pathtracer/exact_gbuffer.h"
+#include "pathtracer/luminance.h"
+#include "pathtracer/reference_error.h"
+
+namespace plumb {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+// Sample counts at which the target error is looked at: fixed, so that where a run stops does not depend on its pace.
+// Each is a quarter more than the one before, which wastes at most that much.
+int next_error_check(int samples) {
+    int count = 16;
+    while (count <= samples) count += std::max(2, count / 8 * 2);
+    return count;
+}
+bool is_error_check(int samples) { return samples >= 2 && next_error_check(samples - 1) == samples; }
+
+// About the brightest radiance that a surface of the scene may show: the brightest emission, and what the other lights
+// make of a white surface across the scene.
+double light_level(const Scene& scene) {
+    const Bounds bounds = scene.bounds();
+    const double squared_size = std::max(1e-30, std::pow(static_cast<double>(bounds.diagonal()), 2.0));
+    double level = luminance(scene.environment.radiance);
+    for (const Material& material : scene.materials)
+        level = std::max(level, static_cast<double>(luminance(material.emission)));
+    for (const PointLight& light : scene.point_lights) level += luminance(light.intensity) / squared_size;
+    for (const SpotLight& light : scene.spot_lights) level += luminance(light.intensity) / squared_size;
+    for (const DirectionalLight& light : scene.directional_lights) level += luminance(light.irradiance);
+    return level;
+}
+
+EmitterSampling strategy_of(const ReferenceSettings& settings) {
+    // Rays that see a part of the scene only must not be the ones that look for light.
+    return settings.oracle ? EmitterSampling::lights : settings.emitter_sampling;
+}
+
+}  // namespace
+
+// What one thread needs to follow a batch of paths.
+struct ReferenceRun::Scratch {
+    VertexBatch starts;
+    SampleBatch samples;
+    BatchEstimate estimate;
+    std::uint64_t rays = 0;
+    // Primary rays that wait to be traced, and whose they are.
+    RayBatch primary;
+    std::array<SampleIndex, most_lanes> primary_index;
+    Lanes<std::uint32_t> primary_pixel;
+    Lanes<std::uint8_t> primary_half;
+};
+
+ReferenceRun::ReferenceRun(const TracedScene& scene, const EnvironmentDistribution& environment,
+                           const SpecularAlbedo* specular_albedo, const View& view, const ReferenceSettings& settings)
+    : scene_(scene),
+      view_(view),
+      settings_(settings),
+      plan_(make_plan(scene, view, settings)),
+      lights_(scene, environment, strategy_of(settings)),
+      layers_(settings.oracle
+                  ? std::optional<OracleLayers>(std::in_place, scene, settings.oracle->view, settings.oracle->layers,
+                                                settings.oracle->minimum_separation)
+                  : std::nullopt),
+      integrator_(scene, lights_, specular_albedo, layers_ ? &*layers_ : nullptr, plan_.estimation),
+      accumulation_(view.width(), view.height(), plan_.estimation, plan_.primary_rays_are_sampled,
+                    light_level(scene.scene())),
+      hits_(first_layer(scene, view)),
+      key_(CheckpointKey::of(scene.scene(), view, settings)) {
+    state_.begin = state_.end = settings.first_sample;
+    find_exact_parts();
+}
+
+ReferenceRun::~ReferenceRun() = default;
+
+// What is the same for every sample through a pixel's centre.
+void ReferenceRun::find_exact_parts() {
+    if (plan_.primary_rays_are_sampled) return;
+    exact_.emission.resize(hits_.size());
+    if (plan_.estimation.direct) exact_.direct.resize(hits_.size());
+    std::atomic<std::uint64_t> rays{hits_.size()};
+    tbb::parallel_for(0, view_.height(), [&](int y) {
+        std::uint64_t row_rays = 0;
+        VertexBatch start;
+        for (int x = 0; x < view_.width(); ++x) {
+            const Ray ray = view_.pixel_ray(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
+            const std::size_t pixel = pixel_index(x, y);
+            if (hits_[pixel].missed()) {
+                exact_.emission[pixel] = scene_.scene().environment_radiance(ray.direction);
+                continue;
+            }
+            const SurfacePoint point = scene_.surface_point(hits_[pixel], ray.direction);
+            exact_.emission[pixel] = point.emission;
+            if (!plan_.estimation.direct) continue;
+            start.count = 0;
+            const glm::vec3 albedo = integrator_.add_start(point, ray.direction, {}, now, start);
+            exact_.direct[pixel] = albedo * integrator_.exact_direct(point, row_rays);
+        }
+        rays += row_rays;
+    });
+    state_.rays = rays;
+}
+
+// False where the exact parts are everything.
+bool ReferenceRun::has_noise() const {
+    const EstimationPlan& plan = plan_.estimation;
+    if (plan_.primary_rays_are_sampled) return !plan_.stochastic.empty();
+    const bool noisy_direct = plan.direct && (lights_.has_extended_lights() || lights_.rays_find_emitters());
+    return plan.ao || plan.indirect || plan.reflection || noisy_direct;
+}
+
+void ReferenceRun::flush(Scratch& scratch) {
+    if (scratch.starts.count == 0) return;
+    integrator_.estimate(scratch.starts, scratch.estimate);
+    accumulation_.add(scratch.samples, scratch.starts.count, scratch.estimate);
+    scratch.rays += static_cast<std::uint64_t>(scratch.estimate.rays);
+    scratch.starts.count = 0;
+}
+
+void ReferenceRun::add_centre_samples(int x, int y, int first_sample, int count, Scratch& scratch) {
+    const std::size_t pixel = pixel_index(x, y);
+    const SurfaceHit& hit = hits_[pixel];
+    if (hit.missed()) {
+        for (int sample = 0; sample < count; ++sample) accumulation_.add_background(pixel, sample & 1, {});
+        return;
+    }
+    const Ray ray = view_.pixel_ray(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
+    const SurfacePoint point = scene_.surface_point(hit, ray.direction);
+    SampleSequence sequence(settings_.seed, x, y, settings_.points);
+    for (int sample = first_sample; sample < first_sample + count; ++sample) {
+        sequence.start_sample(sample);
+        const int lane = scratch.starts.count;
+        scratch.samples.pixel[lane] = static_cast<std::uint32_t>(pixel);
+        scratch.samples.half[lane] = static_cast<std::uint8_t>(sample & 1);
+        scratch.samples.albedo.set(lane,
+                                   integrator_.add_start(point, ray.direction, sequence.index(), now, scratch.starts));
+        if (scratch.starts.count == most_lanes) flush(scratch);
+    }
+}
+
+Ray ReferenceRun::primary_ray(int x, int y, const SampleSequence& sequence, float time) const {
+    const glm::vec2 offset = settings_.antialias ? sequence.point(PathIntegrator::pixel_dimension) : glm::vec2(0.5f);
+    const float at_x = static_cast<float>(x) + offset.x, at_y = static_cast<float>(y) + offset.y;
+    const bool pinhole = !(view_.camera().aperture_radius > 0.0f);
+    const glm::vec2 lens = pinhole ? glm::vec2(0.0f) : sample_disc(sequence.point(PathIntegrator::lens_dimension));
+    Ray ray = view_.lens_ray(at_x, at_y, lens);
+    if (settings_.view_at_shutter_opening) {
+        const Ray before = settings_.view_at_shutter_opening->lens_ray(at_x, at_y, lens);
+        ray.origin = glm::mix(before.origin, ray.origin, time);
+        ray.direction = glm::normalize(glm::mix(before.direction, ray.direction, time));
+    }
+    return ray;
+}
+
+// Traces the primary rays that wait, and starts a path where each ends.
+void ReferenceRun::add_spread_samples(Scratch& scratch) {
+    HitBatch hits;
+    const RayBatch& rays = scratch.primary;
+    scene_.intersect(rays, hits, RayCoherence::coherent);
+    scratch.rays += static_cast<std::uint64_t>(rays.count);
+    for (int i = 0; i < rays.count; ++i) {
+        const glm::vec3 direction = rays.direction.get(i);
+        if (hits[i].missed()) {
+            accumulation_.add_background(scratch.primary_pixel[i], scratch.primary_half[i],
+                                         scene_.scene().environment_radiance(direction));
+            continue;
+        }
+        const SurfacePoint point = scene_.surface_point(hits[i], direction, rays.time[i]);
+        const int lane = scratch.starts.count;
+        scratch.samples.pixel[lane] = scratch.primary_pixel[i];
+        scratch.samples.half[lane] = scratch.primary_half[i];
+        scratch.samples.emission.set(lane, point.emission);
+        scratch.samples.albedo.set(
+            lane, integrator_.add_start(point, direction, scratch.primary_index[i], rays.time[i], scratch.starts));
+    }
+    flush(scratch);
+    scratch.primary.count = 0;
+}
+
+void ReferenceRun::render_tile(int tile, int first_sample, int count, Scratch& scratch) {
+    constexpr int tile_size = 16;
+    const int columns = (view_.width() + tile_size - 1) / tile_size;
+    const int left = tile % columns * tile_size, top = tile / columns * tile_size;
+    for (int y = top; y < std::min(top + tile_size, view_.height()); ++y) {
+        for (int x = left; x < std::min(left + tile_size, view_.width()); ++x) {
+            if (!plan_.primary_rays_are_sampled) {
+                add_centre_samples(x, y, first_sample, count, scratch);
+                continue;
+            }
+            SampleSequence sequence(settings_.seed, x, y, settings_.points);
+            for (int sample = first_sample; sample < first_sample + count; ++sample) {
+                sequence.start_sample(sample);
+                const float time =
+                    settings_.view_at_shutter_opening ? sequence.number(PathIntegrator::time_dimension) : now;
+                const Ray ray = primary_ray(x, y, sequence, time);
+                const float scale = depth_per_distance(view_, ray.direction);
+                const int lane = scratch.primary.count;
+                scratch.primary_index[lane] = sequence.index();
+                scratch.primary_pixel[lane] = static_cast<std::uint32_t>(pixel_index(x, y));
+                scratch.primary_half[lane] = static_cast<std::uint8_t>(sample & 1);
+                scratch.primary.add(ray.origin, ray.direction, view_.camera().far_plane / scale, time);
+                scratch.primary.nearest[lane] = view_.camera().near_plane / scale;
+                if (scratch.primary.count == most_lanes) add_spread_samples(scratch);
+            }
+        }
+    }
+    // Other tiles' pixels are other threads'.
+    if (plan_.primary_rays_are_sampled) add_spread_samples(scratch);
+    flush(scratch);
+}
+
+void ReferenceRun::render_pass(int first_sample, int count) {
+    constexpr int tile_size = 16;
+    const int columns = (view_.width() + tile_size - 1) / tile_size,
+              rows = (view_.height() + tile_size - 1) / tile_size;
+    tbb::parallel_for(0, columns * rows, [&](int tile) {
+        std::unique_ptr<Scratch>& scratch = scratch_.local();
+        if (!scratch) scratch = std::make_unique<Scratch>();
+        render_tile(tile, first_sample, count, *scratch);
+    });
+    for (std::unique_ptr<Scratch>& scratch : scratch_) {
+        state_.rays += scratch->rays;
+        scratch->rays = 0;
+    }
+    state_.end += count;
+}
+
+double ReferenceRun::worst_error() const {
+    double worst = 0.0;
+    for (const StochasticPlane& plane : plan_.stochastic) {
+        worst = std::max(worst, accumulation_.relative_error(plane, samples_done(), exact_));
+    }
+    return worst;
+}
+
+void ReferenceRun::resume(const ReferenceControl& control) {
+    if (control.checkpoint.empty() || !std::filesystem::exists(control.checkpoint)) return;
+    const CheckpointState found = read_checkpoint(control.checkpoint, key_, accumulation_.values());
+    if (found.begin != settings_.first_sample || found.end > settings_.samples) {
+        throw ReferenceError(fmt::format(
+            "checkpoint '{}' holds samples {} to {} per pixel, which do not begin those asked for, {} to {}; ask for "
+            "at "
+            "least as many from the same one on, or remove it",
+            control.checkpoint.string(), found.begin, found.end, settings_.first_sample, settings_.samples));
+    }
+    state_ = found;
+}
+
+bool ReferenceRun::sample(const ReferenceControl& control) {
+    constexpr double pass_seconds = 1.0, checkpoint_seconds = 60.0;
+    const Clock::time_point start = Clock::now();
+    Clock::time_point last_checkpoint = start;
+    resume(control);
+    const double seconds_before = state_.seconds;
+    if (!has_noise()) state_.end = settings_.samples;
+
+    const double target = settings_.target_error;
+    bool stopped = false;
+    double seconds_per_sample = 0.0;
+    while (!stopped && state_.end < settings_.samples) {
+        if (target > 0.0 && is_error_check(samples_done()) && worst_error() < target) break;
+        int limit = settings_.samples;
+        if (target > 0.0) limit = std::min(limit, state_.begin + next_error_check(samples_done()));
+        const double affordable = seconds_per_sample > 0.0 ? pass_seconds / seconds_per_sample : 2.0;
+        const int pairs = static_cast<int>(std::clamp(0.5 * affordable, 1.0, 1e6));
+        const int count = std::min(2 * pairs, limit - state_.end);
+
+        const Clock::time_point pass_start = Clock::now();
+        render_pass(state_.end, count);
+        seconds_per_sample = seconds_since(pass_start) / count;
+        state_.seconds = seconds_before + seconds_since(start);
+
+        // Told before the question whether to stop, so that whoever watches can stop the run after this very pass.
+        if (control.on_progress) {
+            control.on_progress({samples_done(), settings_.samples - settings_.first_sample, worst_error(),
+                                 static_cast<double>(state_.rays) / std::max(state_.seconds, 1e-9), state_.seconds});
+        }
+        stopped = control.stop && control.stop->load() && state_.end < settings_.samples;
+        if (!control.checkpoint.empty() && (stopped || seconds_since(last_checkpoint) > checkpoint_seconds)) {
+            write_checkpoint(control.checkpoint, key_, state_, accumulation_.values());
+            last_checkpoint = Clock::now();
+        }
+    }
+    state_.seconds = seconds_before + seconds_since(start);
+    return !stopped;
+}
+
+ReferenceResult ReferenceRun::run(const ReferenceControl& control) { return finish(sample(control)); }
+
+bool ReferenceRun::run_shard(const std::filesystem::path& file, const ReferenceControl& control) {
+    if (!sample(control)) return false;
+    write_checkpoint(file, key_, state_, accumulation_.values());
+    return true;
+}
+
+ReferenceResult ReferenceRun::merge(const std::vector<std::filesystem::path>& shards) {
+    if (shards.empty()) throw ReferenceError("there are no shards to merge; name at least one file");
+    struct Shard {
+        std::filesystem::path file;
+        CheckpointState state;
+    };
+    std::vector<Shard> read;
+    std::vector<double> sums(accumulation_.values().size());
+    std::uint64_t rays = 0;
+    double seconds = 0.0;
+    for (const std::filesystem::path& file : shards) {
+        read.push_back({file, read_checkpoint(file, key_, sums)});
+        accumulation_.add(sums);
+        rays += read.back().state.rays, seconds += read.back().state.seconds;
+    }
+    std::ranges::sort(read, {}, [](const Shard& shard) { return shard.state.begin; });
+    for (std::size_t i = 0; i < read.size(); ++i) {
+        const int expected = i == 0 ? 0 : read[i - 1].state.end;
+        if (read[i].state.begin != expected) {
+            throw ReferenceError(
+                fmt::format("shard '{}' begins with sample {}, but {} is the next after {}; shards must follow each "
+                            "other from 0 on, "
+                            "without gap or overlap",
+                            read[i].file.string(), read[i].state.begin, expected,
+                            i == 0 ? std::string("nothing") : fmt::format("'{}'", read[i - 1].file.string())));
+        }
+    }
+    state_ = {0, read.back().state.end, rays, seconds};
+    return finish(true);
+}
+
+ReferenceResult ReferenceRun::finish(bool complete) const {
+    ReferenceResult result{Frame(view_.width(), view_.height()),
+                           samples_done(),
+                           state_.seconds,
+                           state_.rays,
+                           complete,
+                           accumulation_.is_exact()};
+    for (const StochasticPlane& plane : plan_.stochastic) {
+        const bool sampled = plan_.primary_rays_are_sampled || plane.kind != StochasticPlane::Kind::emission;
+        if (sampled) {
+            accumulation_.write(plane, samples_done(), exact_, result.frame);
+        } else {
+            write_gbuffer_plane(scene_, view_, nullptr, hits_, plane.name, result.frame);
+        }
+    }
+    const View* previous = settings_.previous_view ? &*settings_.previous_view : nullptr;
+    std::vector<SurfaceHit> hits = hits_;
+    for (int layer = 1; layer <= plan_.layers; ++layer) {
+        if (layer > 1) hits = next_layer(scene_, view_, hits, settings_.minimum_separation);
+        for (const std::string& plane : plan_.gbuffer) {
+            if (layer_of(plane) == layer) write_gbuffer_plane(scene_, view_, previous, hits, plane, result.frame);
+        }
+    }
+    const Quantities& quantities = settings_.quantities;
+    result.frame.facts = {{"renderer", fmt::format("path tracer, Embree {}", RTC_VERSION_STRING)},
+                          {"scene", scene_.scene().name},
+                          {"view", view_.camera().name},
+                          {"samples", fmt::format("{}", samples_done())},
+                          {"seed", fmt::format("{}", settings_.seed)},
+                          {"bounces", fmt::format("{}", quantities.bounces)},
+                          {"ao_radius", fmt::format("{}", quantities.ao_radius)},
+                          {"ao_falloff", std::string(to_string(quantities.ao_falloff))},
+                          {"indirect_radius", fmt::format("{}", quantities.indirect_radius)},
+                          {"minimum_separation", fmt::format("{}", settings_.minimum_separation)},
+                          {"antialias", settings_.antialias ? "yes" : "no"},
+                          {"points", settings_.points == SamplePoints::sobol ? "sobol" : "random"},
+                          {"roulette_after", fmt::format("{}", settings_.roulette_after)},
+                          {"rays", fmt::format("{}", state_.rays)},
+                          {"seconds", fmt::format("{:.3f}", state_.seconds)}};
+    if (settings_.oracle) {
+        result.frame.facts["oracle_layers"] =
+            settings_.oracle->layers == 0 ? "all" : fmt::format("{}", settings_.oracle->layers);
+        result.frame.facts["oracle_separation"] = fmt::format("{}", settings_.oracle->minimum_separation);
+    }
+    return result;
+}
+
+}  // namespace plumb
