@@ -13,6 +13,7 @@
 #include "experiments/progress_line.h"
 #include "experiments/scene_finder.h"
 #include "experiments/terminal_table.h"
+#include "scenes/effects.h"
 
 namespace plumb {
 namespace {
@@ -81,6 +82,11 @@ int show_scene(const SceneFinder& finder, const std::string& name) {
                    bounds.lower.y, bounds.lower.z, bounds.upper.x, bounds.upper.y, bounds.upper.z);
     }
     fmt::print("lights      {}\n", lights.empty() ? "none" : fmt::format("{}", fmt::join(lights, ", ")));
+    std::vector<std::string> effects;
+    for (const Effect& effect : plan_effects(scene).effects) {
+        if (effect.on) effects.emplace_back(to_string(effect.kind));
+    }
+    fmt::print("calls for   {}\n", effects.empty() ? "no effects" : fmt::format("{}", fmt::join(effects, ", ")));
     fmt::print("hash        {:016x}\n\nviews\n", scene.content_hash());
     for (const Camera& camera : scene.cameras) {
         const glm::vec3 eye = camera.position();

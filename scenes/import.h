@@ -7,9 +7,8 @@
 // Decisions:
 //   glTF light units: one candela, lux or nit counts as one W/sr, W/m^2 or W/(m^2 sr): lights and emission keep their
 //   ratio.
-//   Specular lobes: glTF's dielectrics reflect 0.04, or what KHR_materials_ior and KHR_materials_specular say (its
-//   colour
-//     counts by its luminance, its textures do not). Other formats have none but metals, unless `specular` is set.
+//   Specular lobes: glTF's dielectrics reflect 0.04, or what KHR_materials_ior and KHR_materials_specular say, whose
+//     colour counts by its luminance. Other formats have none but metals, unless `specular` is set.
 //   Transparency is that of thin sheets, without refraction. Coverage a, from glTF's alphaMode BLEND or MTL's d (Tr):
 //     transmission 1 - a, times MTL's Tf; base colour and emission times a. Tf alone says nothing: exporters write
 //     Tf 1 1 1 for everything. KHR_materials_transmission lets factor * base colour through its dielectric part. An
@@ -46,10 +45,10 @@ struct ImportOptions {
     // Exporters write a grey Kd (0.588 from 3ds Max) under every texture, which a strict reader multiplies with it and
     // so darkens the whole scene. True: a texture stands alone.
     bool ignore_diffuse_colour_under_texture = false;
-    // MTL and its like leave open what Ks means. True: a specular lobe of reflectance luminance(Ks), or that of Ni
-    // where the material is transparent; mirrors (illum 3, 5, 8 with Ks brighter than Kd) are metals of colour Ks; Ns
-    // is Blinn-Phong's exponent, from 1000, the largest one, and under illum 3 and more without roughness. False: none
-    // but metals.
+    // MTL leaves open what Ks means. True: a specular lobe of reflectance luminance(Ks), or that of Ni where the
+    // material is transparent; mirrors (illum 3, 5, 8 with Ks brighter than Kd) are metals of colour Ks; illum 0 has
+    // none. Ns is Blinn-Phong's exponent; from 1000, the largest one, and under illum 3 and more there is no roughness.
+    // False: no lobes but metals'.
     bool specular = false;
     std::vector<std::string> keep_apart;  // names of nodes or groups that are to stay instances of their own
 };

@@ -324,9 +324,9 @@ private:
             material.base_colour = specular;
             material.metallic = 1.0f;
         }
-        int illumination = 2;  // MTL's models: 0 and 1 without highlights, 3 and more with traced reflections
+        int illumination = 2;  // MTL's models: 0 without any, 3 and more with traced reflections
         from.Get(AI_MATKEY_OBJ_ILLUM, illumination);
-        if (!options_.specular || brightest == 0.0f || illumination < 2) return;
+        if (!options_.specular || brightest == 0.0f || illumination == 0) return;
         if (illumination > 2 || exponent >= largest_exponent) material.roughness = 0.0f;
         const bool mirror = illumination == 3 || illumination == 5 || illumination == 8;
         const float index = number(from, AI_MATKEY_REFRACTI, 1.0f);

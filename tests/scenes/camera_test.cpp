@@ -80,6 +80,60 @@ TEST(View, ClipCoordinatesAgreeWithProject) {
     }
 }
 
+TEST(View, LensRaysOfAPixelMeetOnItsPixelRayAtTheFocusDistance) {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<float> unit(0.0f, 1.0f);
+    for (int i = 0; i < 100; ++i) {
+        Camera camera = random_camera(random);
+        camera.aperture_radius = 0.3f * unit(random);
+        camera.focus_distance = 0.5f + 10.0f * unit(random);
+        const View view(camera, 320, 180);
+        const float x = 320.0f * unit(random), y = 180.0f * unit(random);
+        const glm::mat4 camera_from_world = glm::inverse(camera.world_from_camera);
+        for (const glm::vec2& lens : {glm::vec2(0, 0), glm::vec2(1, 0), glm::vec2(-0.6f, 0.7f)}) {
+            const Ray ray = view.lens_ray(x, y, lens);
+            EXPECT_NEAR(glm::length(ray.direction), 1.0f, 1e-6f);
+            // Where the ray crosses the focal plane, by intersection with the plane in world space.
+            const glm::vec3 axis = -glm::vec3(camera.world_from_camera[2]);
+            const float distance = (camera.focus_distance - glm::dot(ray.origin - camera.position(), axis)) /
+                                   glm::dot(ray.direction, axis);
+            const glm::vec3 seen = view.project(ray.origin + distance * ray.direction);
+            // 0.01 px, as in the test of project() above.
+            EXPECT_NEAR(seen.x, x, 0.01f) << camera.aperture_radius << " " << camera.focus_distance;
+            EXPECT_NEAR(seen.y, y, 0.01f);
+            EXPECT_NEAR(seen.z, camera.focus_distance, 1e-4f);
+            const glm::vec3 start(camera_from_world * glm::vec4(ray.origin, 1.0f));
+            EXPECT_NEAR(glm::distance(start, glm::vec3(camera.aperture_radius * lens, 0.0f)), 0.0f, 1e-5f);
+        }
+    }
+}
+
+TEST(View, LensRaysOfAPinholeArePixelRaysToTheBit) {
+    std::mt19937 random(4);
+    const View view(random_camera(random), 64, 48);
+    for (const float x : {0.5f, 31.25f, 63.5f}) {
+        const Ray pinhole = view.pixel_ray(x, 17.5f), lens = view.lens_ray(x, 17.5f, {0.3f, -0.8f});
+        EXPECT_EQ(lens.origin, pinhole.origin);
+        EXPECT_EQ(lens.direction, pinhole.direction);
+    }
+}
+
+// A point at depth d off the focal plane f blurs to a disc of radius A |d - f| / (f d), in units of the image at 1 m:
+// the thin lens equation, with which real lenses are calculated.
+TEST(View, CircleOfConfusionIsThatOfAThinLens) {
+    Camera camera;
+    camera.aperture_radius = 0.05f;
+    camera.focus_distance = 2.0f;
+    const View view(camera, 1000, 1000);
+    for (const float depth : {1.0f, 3.0f, 8.0f}) {
+        // The pixel whose ray through the lens' edge hits the point on the axis at this depth.
+        const float expected = 500.0f + view.pixels_per_metre() * 0.05f * (2.0f - depth) / (2.0f * depth);
+        const Ray ray = view.lens_ray(expected, 500.0f, {-1.0f, 0.0f});
+        const glm::vec3 hit = ray.origin + depth / -ray.direction.z * ray.direction;
+        EXPECT_NEAR(hit.x, 0.0f, 1e-5f) << depth;  // float rounding at 8 m
+    }
+}
+
 TEST(View, DepthIsReversedBetweenNearAndFar) {
     Camera camera;
     camera.near_plane = 0.25f;
@@ -100,6 +154,11 @@ TEST(View, RefusesWhatCannotBeSeenThrough) {
     EXPECT_THAT(message_of<SceneError>([&] { View(camera, 0, 10); }), HasSubstr("0x10"));
     camera.near_plane = 0.0f;
     EXPECT_THAT(message_of<SceneError>([&] { View(camera, 10, 10); }), HasSubstr("near 0"));
+    Camera bad_lens;
+    bad_lens.aperture_radius = -1.0f;
+    EXPECT_THAT(message_of<SceneError>([&] { View(bad_lens, 10, 10); }), HasSubstr("aperture radius -1"));
+    bad_lens.aperture_radius = 1.0f, bad_lens.focus_distance = 0.0f;
+    EXPECT_THAT(message_of<SceneError>([&] { View(bad_lens, 10, 10); }), HasSubstr("focus distance 0"));
     EXPECT_THAT(message_of<SceneError>([] { Camera::look_at("up", {0, 0, 0}, {0, 1, 0}, 1.0f); }), HasSubstr("'up'"));
 }
 
@@ -119,6 +178,15 @@ TEST(CameraPath, PassesThroughItsKeys) {
     }
     EXPECT_EQ(path.at(-1.0f).position(), path.keys.front().eye);
     EXPECT_NEAR(glm::distance(path.at(99.0f).position(), path.keys.back().eye), 0.0f, 1e-5f);
+}
+
+TEST(CameraPath, FocusFollowsTheTargetUnlessGiven) {
+    CameraPath path = test_path();
+    path.aperture_radius = 0.01f;
+    EXPECT_FLOAT_EQ(path.at(3.0f).focus_distance, glm::distance(path.keys[2].eye, path.keys[2].target));
+    EXPECT_EQ(path.at(3.0f).aperture_radius, 0.01f);
+    path.focus_distance = 7.0f;
+    EXPECT_EQ(path.at(3.0f).focus_distance, 7.0f);
 }
 
 TEST(CameraPath, SpeedIsContinuousAtKeys) {

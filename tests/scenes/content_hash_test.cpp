@@ -47,11 +47,42 @@ TEST(ContentHash, ChangesWithEverythingThatCanChangeAPixel) {
         {"mesh material", [](Scene& s) { s.meshes[0].material = 1; }},
         {"instance", [](Scene& s) { s.instances.push_back(s.instances[0]); }},
         {"transform", [](Scene& s) { s.instances[0].world_from_object[3].x = 1; }},
+        {"motion", [](Scene& s) { s.instances[0].motion.keys = {{}}; }},
+        {"motion key time", [](Scene& s) { s.instances[0].motion.keys = {{.time = 1.0f}}; }},
+        {"motion translation",
+         [](Scene& s) {
+             s.instances[0].motion.keys = {{.translation = {1, 0, 0}}};
+         }},
+        {"motion rotation",
+         [](Scene& s) {
+             s.instances[0].motion.keys = {{.rotation = {0, 1, 0, 0}}};
+         }},
+        {"motion scale",
+         [](Scene& s) {
+             s.instances[0].motion.keys = {{.scale = {1, 2, 1}}};
+         }},
+        {"motion interpolation",
+         [](Scene& s) {
+             s.instances[0].motion.keys = {{}};
+             s.instances[0].motion.interpolation = MotionInterpolation::linear;
+         }},
+        {"motion pivot",
+         [](Scene& s) {
+             s.instances[0].motion.keys = {{}};
+             s.instances[0].motion.pivot.x = 1;
+         }},
+        {"motion rest",
+         [](Scene& s) {
+             s.instances[0].motion.keys = {{}};
+             s.instances[0].motion.rest[3].x = 1;
+         }},
         {"base colour", [](Scene& s) { s.materials[0].base_colour.x = 0.1f; }},
         {"base colour texture", [](Scene& s) { s.materials[0].base_colour_texture = 0; }},
         {"metallic", [](Scene& s) { s.materials[0].metallic = 0.5f; }},
         {"roughness", [](Scene& s) { s.materials[0].roughness = 0.5f; }},
         {"metallic texture", [](Scene& s) { s.materials[0].metallic_roughness_texture = 0; }},
+        {"dielectric reflectance", [](Scene& s) { s.materials[0].dielectric_reflectance = 0.04f; }},
+        {"transmission", [](Scene& s) { s.materials[0].transmission.y = 0.5f; }},
         {"emission", [](Scene& s) { s.materials[0].emission.y = 1; }},
         {"emission texture", [](Scene& s) { s.materials[0].emission_texture = 0; }},
         {"alpha mask", [](Scene& s) { s.materials[0].alpha_mask = true; }},
@@ -64,6 +95,10 @@ TEST(ContentHash, ChangesWithEverythingThatCanChangeAPixel) {
         {"wrap v", [](Scene& s) { s.textures[0].wrap_v = TextureWrap::mirror; }},
         {"point position", [](Scene& s) { s.point_lights[0].position.z = 1; }},
         {"point intensity", [](Scene& s) { s.point_lights[0].intensity.z = 2; }},
+        {"point constant", [](Scene& s) { s.point_lights[0].attenuation.constant = 1; }},
+        {"point linear", [](Scene& s) { s.point_lights[0].attenuation.linear = 1; }},
+        {"point quadratic", [](Scene& s) { s.point_lights[0].attenuation.quadratic = 2; }},
+        {"spot attenuation", [](Scene& s) { s.spot_lights[0].attenuation.linear = 1; }},
         {"spot position", [](Scene& s) { s.spot_lights[0].position.z = 1; }},
         {"spot direction",
          [](Scene& s) {
@@ -77,6 +112,7 @@ TEST(ContentHash, ChangesWithEverythingThatCanChangeAPixel) {
              s.directional_lights[0].direction = {1, 0, 0};
          }},
         {"sun irradiance", [](Scene& s) { s.directional_lights[0].irradiance.x = 3; }},
+        {"sun disc", [](Scene& s) { s.directional_lights[0].angular_radius = 0.005f; }},
         {"sky", [](Scene& s) { s.environment.radiance.x = 1; }},
         {"sky image", [](Scene& s) { s.environment.texture = 0; }},
         {"sky rotation", [](Scene& s) { s.environment.rotation = 1; }},

@@ -1,4 +1,6 @@
 // Real files with real defects, where the folder PLUMBLINE_SCENES holds them.
+#include <algorithm>
+#include <map>
 #include <set>
 
 #include <gmock/gmock.h>
@@ -51,6 +53,38 @@ TEST(SharedScenes, EveryWrapperWhoseMeshIsThereLoadsWithThreeViewsAndAPath) {
         for (const std::string& note : scene.import_notes)
             EXPECT_THAT(note, testing::Not(testing::HasSubstr("magenta")));
     }
+}
+
+// Many files write Tf 1 1 1 for every material, or d 1 with Tr 1: read literally, walls would be windows.
+TEST(SharedScenes, NothingButGlassIsTransparent) {
+    SKIP_WITHOUT_SCENES();
+    const std::map<std::string, std::set<std::string>> glass = {{"bathroom-glossy", {"BulbGlass"}},
+                                                                {"flight-helmet", {"LensesMat"}}};
+    for (const std::string& name : wrapper_scene_names()) {
+        if (name == "dragon-full") continue;  // its mesh is fetched, not shared
+        const Scene scene = load_scene(name, {scenes_folder()});
+        std::set<std::string> transparent;
+        for (const Mesh& mesh : scene.meshes) {
+            const Material& material = scene.materials[mesh.material];
+            if (material.is_transparent()) transparent.insert(material.name);
+        }
+        const auto expected = glass.find(name);
+        EXPECT_EQ(transparent, expected == glass.end() ? std::set<std::string>{} : expected->second) << name;
+    }
+}
+
+TEST(SharedScenes, MirrorAndGlossBoxesReflect) {
+    SKIP_WITHOUT_SCENES();
+    const Scene mirror = load_scene("cornell-mirror", {scenes_folder()});
+    const auto block = std::ranges::find(mirror.materials, std::string("tallBox"), &Material::name);
+    ASSERT_NE(block, mirror.materials.end());
+    EXPECT_EQ(block->metallic, 1.0f);
+    EXPECT_EQ(block->roughness, 0.0f);
+    const Scene gloss = load_scene("cornell-glossy", {scenes_folder()});
+    const auto block_of_gloss = std::ranges::find(gloss.materials, std::string("shortBox"), &Material::name);
+    ASSERT_NE(block_of_gloss, gloss.materials.end());
+    EXPECT_NEAR(block_of_gloss->dielectric_reflectance, 0.8f, 1e-6f);
+    EXPECT_EQ(block_of_gloss->metallic, 0.0f);
 }
 
 TEST(SharedScenes, RepairsOfCrytekSponzaAreThoseThatItsNotesPromise) {
