@@ -1,10 +1,12 @@
 // Ambient visibility against closed forms.
 #include <limits>
 
+#include <fmt/format.h>
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
+#include "tests/pathtracer/closed_forms.h"
 #include "tests/pathtracer/test_scenes.h"
 
 namespace plumb {
@@ -19,93 +21,108 @@ ReferenceSettings ambient_settings(float radius, Falloff falloff = Falloff::hard
     return settings;
 }
 
-const std::vector<glm::vec3> wall = {{0, 0, 8}, {0, 0, -8}, {0, 6, -8}, {0, 6, 8}};
+// So narrow a view of the floor's point (x, z) that all pixels see it to within a millimetre; being symmetric, the
+// spread errs by its square only.
+View view_of_floor_point(float x, float z) { return view_of({x + 0.3f, 0.2f, z + 0.25f}, {x, 0, z}, 1e-3f); }
 
-// A floor that meets a wall in the plane x = 0.
-Scene corner() {
-    Scene scene;
-    const int grey = add_material(scene, glm::vec3(0.5f));
-    add_quads(scene, grey, {floor_quad(10.0f), wall});
-    return scene;
+// Floor, and walls in the planes x = 0 and z = 0, `height` high. They reach 50 m, far beyond every finite radius here.
+constexpr float reach = 50.0f;
+closed_form::Polygon wall_at_x(double height) {
+    return {{0, 0, reach}, {0, 0, -reach}, {0, height, -reach}, {0, height, reach}};
 }
-// Sees nothing but floor, so that every pixel's answer is that of its distance from the wall.
-View corner_view() { return view_of({1.5f, 1.2f, 2.0f}, {0.6f, 0.0f, 0.0f}, 0.15f); }
-
-TEST(AmbientVisibility, BesideAFiniteWallIsOneMinusItsViewFactor) {
-    const Scene scene = corner();
-    const Frame frame = PathTracer(scene).render(corner_view(), ambient_settings(infinity)).frame;
-    expect_mean(frame, "ao", [&](int x, int y) {
-        const glm::dvec3 position(colour_at(frame.plane("position"), x, y));
-        return 1.0 - polygon_irradiance(position, {0, 1, 0}, wall) / glm::pi<double>();
-    });
+closed_form::Polygon wall_at_z(double height) {
+    return {{-reach, 0, 0}, {reach, 0, 0}, {reach, height, 0}, {-reach, height, 0}};
 }
-
-// The wall's height h = 6 m at distance a, endless along z: 1 - (1 - a / sqrt(a^2 + h^2)) / 2 (Howell, B-3). The wall
-// ends 8 m to either side, which opens less than 0.5 % more.
-TEST(AmbientVisibility, BesideALongWallFollowsTheStripFormula) {
-    const Scene scene = corner();
-    const Frame frame = PathTracer(scene).render(corner_view(), ambient_settings(infinity)).frame;
-    double mean = 0.0, expected = 0.0;
-    for (int y = 0; y < frame.height(); ++y) {
-        for (int x = 0; x < frame.width(); ++x) {
-            const double a = frame.plane("position").at(x, y, 0);
-            mean += frame.plane("ao").at(x, y);
-            expected += 1.0 - 0.5 * (1.0 - a / std::sqrt(a * a + 36.0));
-        }
-    }
-    EXPECT_NEAR(mean / expected, 1.0, 0.01);
-}
-
-// A direction with component -w along the wall's normal meets it after a / w. Cosine-weighted directions are uniform
-// over the unit disc, where w is one coordinate: obscurance = (1/pi) * integral over w from a/r to 1 of 2 sqrt(1 - w^2)
-// g(a/w).
-class CornerFalloffs : public testing::TestWithParam<Falloff> {};
-
-TEST_P(CornerFalloffs, WithinARadiusTheWallCountsByItsFalloff) {
-    const Scene scene = corner();
-    const float radius = 1.5f;
-    const Frame frame = PathTracer(scene).render(corner_view(), ambient_settings(radius, GetParam())).frame;
-    expect_mean(frame, "ao", [&](int x, int y) {
-        const double a = frame.plane("position").at(x, y, 0);
-        double obscurance = 0.0;
-        constexpr int steps = 2000;  // midpoint rule: error below 1e-5
-        const double first = std::min(1.0, a / radius), step = (1.0 - first) / steps;
-        for (int i = 0; i < steps; ++i) {
-            const double w = first + (i + 0.5) * step, ratio = a / (w * radius);
-            const double quadratic = 1.0 - ratio * ratio;
-            const double g = GetParam() == Falloff::hard        ? 1.0
-                             : GetParam() == Falloff::quadratic ? quadratic
-                                                                : quadratic * quadratic * quadratic;
-            obscurance += 2.0 * std::sqrt(1.0 - w * w) * g * step;
-        }
-        return 1.0 - obscurance / glm::pi<double>();
-    });
-}
-
-INSTANTIATE_TEST_SUITE_P(All, CornerFalloffs, testing::Values(Falloff::hard, Falloff::quadratic, Falloff::cubic));
-
-// Below the centre of a disc of radius r at height h the view factor is r^2 / (r^2 + h^2) (Howell, B-12).
-TEST(AmbientVisibility, UnderADiscFollowsItsViewFactor) {
+Scene floor_and(const std::vector<closed_form::Polygon>& polygons) {
     Scene scene;
     const int grey = add_material(scene, glm::vec3(0.5f));
     add_quads(scene, grey, {floor_quad(10.0f)});
-    Mesh disc;
-    disc.material = grey;
-    const float radius = 0.8f, height = 0.6f;
-    constexpr unsigned corners = 2048;  // the polygon's area falls short of the disc's by 1.6e-6
-    disc.positions.push_back({0, height, 0});
-    for (unsigned i = 0; i < corners; ++i) {
-        const float angle = glm::two_pi<float>() * static_cast<float>(i) / corners;
-        disc.positions.push_back({radius * std::cos(angle), height, radius * std::sin(angle)});
-        disc.triangles.push_back({0, 1 + i, 1 + (i + 1) % corners});
-    }
-    scene.instances.push_back({"disc", static_cast<int>(scene.meshes.size()), glm::mat4(1.0f)});
-    scene.meshes.push_back(disc);
-    // So narrow a view that all pixels see the centre to within 2 mm.
-    const View view = view_of({1.0f, 0.4f, 0.9f}, {0, 0, 0}, 1e-3f);
-    const Frame frame = PathTracer(scene).render(view, ambient_settings(infinity)).frame;
-    expect_mean(frame, "ao", 1.0 - radius * radius / (radius * radius + height * height));
+    for (const closed_form::Polygon& polygon : polygons) add_polygon(scene, grey, polygon);
+    return scene;
 }
+Scene corner() { return floor_and({wall_at_x(6.0)}); }
+View corner_view() { return view_of({1.5f, 1.2f, 2.0f}, {0.6f, 0.0f, 0.0f}, 0.15f); }
+
+// A horizontal disc around (0, height, 0). The polygon's area falls short of the disc's by 1.6e-6.
+Scene floor_under_disc(float radius, float height) {
+    closed_form::Polygon disc;
+    constexpr int corners = 2048;
+    for (int i = 0; i < corners; ++i) {
+        const double angle = 2.0 * closed_form::pi * i / corners;
+        disc.emplace_back(radius * std::cos(angle), height, radius * std::sin(angle));
+    }
+    return floor_and({disc});
+}
+
+double seen_fraction(const glm::dvec3& point, const closed_form::Polygon& polygon) {
+    return closed_form::polygon_irradiance(point, {0, 1, 0}, polygon) / closed_form::pi;
+}
+
+// Each with every falloff, a radius that cuts through the occluder, one that contains most of it, and none.
+class ObscuranceOf : public testing::TestWithParam<std::tuple<Falloff, float>> {
+protected:
+    using Formula = std::function<double(double radius, Falloff falloff)>;
+    static void expect(const Scene& scene, float x, float z, const Formula& obscurance) {
+        const auto [falloff, radius] = GetParam();
+        const Frame frame =
+            PathTracer(scene).render(view_of_floor_point(x, z), ambient_settings(radius, falloff)).frame;
+        expect_mean(frame, "ao", 1.0 - obscurance(radius, falloff), fmt::format("at {}, {}", x, z));
+    }
+};
+
+TEST_P(ObscuranceOf, AHighWallFollowsItsClosedForm) {
+    const Scene scene = floor_and({wall_at_x(reach)});
+    for (const float a : {0.15f, 0.6f, 1.4f}) {
+        expect(scene, a, 0.0f, [&](double radius, Falloff falloff) {
+            return std::isinf(radius) ? seen_fraction({a, 0, 0}, wall_at_x(reach))
+                                      : closed_form::endless_wall(a, radius, falloff);
+        });
+    }
+}
+
+TEST_P(ObscuranceOf, ALowWallFollowsItsIntegral) {
+    constexpr double height = 0.7;
+    const Scene scene = floor_and({wall_at_x(height)});
+    for (const float a : {0.15f, 0.6f}) {
+        expect(scene, a, 0.0f, [&](double radius, Falloff falloff) {
+            return std::isinf(radius) ? seen_fraction({a, 0, 0}, wall_at_x(height))
+                                      : closed_form::wall_of_height(a, height, radius, falloff);
+        });
+    }
+}
+
+TEST_P(ObscuranceOf, ACornerOfTwoWallsFollowsItsIntegral) {
+    const Scene scene = floor_and({wall_at_x(reach), wall_at_z(reach)});
+    for (const glm::vec2 at : {glm::vec2(0.3f, 0.3f), glm::vec2(0.2f, 0.9f), glm::vec2(0.85f, 0.7f)}) {
+        expect(scene, at.x, at.y, [&](double radius, Falloff falloff) {
+            if (!std::isinf(radius)) return closed_form::corner_of_two_walls(at.x, at.y, radius, falloff);
+            // Of each wall what is in front of the other one.
+            const glm::dvec3 point(at.x, 0, at.y);
+            return seen_fraction(point, {{0, 0, reach}, {0, 0, 0}, {0, reach, 0}, {0, reach, reach}}) +
+                   seen_fraction(point, {{0, 0, 0}, {reach, 0, 0}, {reach, reach, 0}, {0, reach, 0}});
+        });
+    }
+}
+
+TEST_P(ObscuranceOf, ADiscFollowsItsViewFactorAlsoOffItsAxis) {
+    constexpr float disc_radius = 0.6f, height = 0.45f;
+    const Scene scene = floor_under_disc(disc_radius, height);
+    for (const float a : {0.0f, 0.35f, 0.6f, 1.0f}) {
+        expect(scene, a, 0.0f, [&](double radius, Falloff falloff) {
+            return closed_form::under_disc(disc_radius, height, a, radius, falloff);
+        });
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ObscuranceOf,
+                         testing::Combine(testing::Values(Falloff::hard, Falloff::quadratic, Falloff::cubic),
+                                          testing::Values(0.5f, 0.9f, 2.5f, infinity)),
+                         [](const testing::TestParamInfo<std::tuple<Falloff, float>>& test) {
+                             const float radius = std::get<1>(test.param);
+                             return fmt::format(
+                                 "{}{}", to_string(std::get<0>(test.param)),
+                                 std::isinf(radius) ? "Everywhere" : fmt::format("Within{:.0f}cm", 100.0f * radius));
+                         });
 
 TEST(AmbientVisibility, DoesNotDependOnWhichOtherPlanesAreWanted) {
     const Scene scene = corner();
