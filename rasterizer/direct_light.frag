@@ -51,12 +51,20 @@ float map_visibility(int map, mat4 clip_from_world, vec3 receiver) {
 }
 #endif
 
+#if defined(POINT_LIGHTS) || defined(SPOT_LIGHTS)
+// constant + linear d + quadratic d^2; exactly `square`, the squared distance, for the terms 0, 0, 1.
+float attenuation_divisor(vec4 terms, float square) {
+    return terms.x + terms.y * sqrt(square) + terms.z * square;
+}
+#endif
+
 #ifdef POINT_LIGHTS
 struct PointLight {
     vec3 position;
     float near;
     vec3 intensity;
     int cube;
+    vec4 attenuation;
 };
 layout(std430, binding = 0) readonly buffer PointBlock { PointLight point_lights[]; };
 
@@ -65,7 +73,7 @@ vec3 point_irradiance(PointLight light, vec3 receiver, vec3 normal) {
     float square = dot(to_light, to_light);
     float cosine = dot(normal, to_light) * inversesqrt(square);
     if (cosine <= 0.0) return vec3(0.0);
-    return light.intensity * (cosine / square) *
+    return light.intensity * (cosine / attenuation_divisor(light.attenuation, square)) *
            cube_visibility(point_cubes, POINT_CUBES, light.cube, light.near, -to_light, normal);
 }
 #endif
@@ -83,6 +91,7 @@ struct SpotLight {
     float near;
     int cube;
     float padding;
+    vec4 attenuation;
 };
 layout(std430, binding = 1) readonly buffer SpotBlock { SpotLight spot_lights[]; };
 
@@ -111,7 +120,8 @@ vec3 spot_irradiance(SpotLight light, vec3 receiver, vec3 normal) {
     float from_axis = -dot(direction, light.direction);
     if (cosine <= 0.0 || from_axis <= light.cosine_outer) return vec3(0.0);
     float cone = clamp((from_axis - light.cosine_outer) / (light.cosine_inner - light.cosine_outer), 0.0, 1.0);
-    return light.intensity * (cone * cone * cosine / square * spot_visibility(light, receiver, normal));
+    return light.intensity * (cone * cone * cosine / attenuation_divisor(light.attenuation, square) *
+                              spot_visibility(light, receiver, normal));
 }
 #endif
 

@@ -3,6 +3,8 @@
 // Sums what point, spot and directional lights, emissive surfaces and the environment send to each pixel in one
 // segment, times albedo / pi. Unoccluded, analytic lights and emitters of up to 64 triangles are exact; shadows are
 // those of the shadow maps (shadow_pass.h), filtered over 2 x 2 texels.
+//   Point and spot lights fall off as their attenuation says. Not simulated: the angular radius of directional lights,
+//   whose shadows stay sharp; transmission, since a transparent surface casts the shadow of an opaque one.
 //   The environment's irradiance (environment_light.h) is multiplied with the ambient visibility `ao` of the first
 //   layer where the method has it: within the quantity's radius that is occlusion, beyond it the sky shines through
 //   walls. The second layer takes the same pixel's ambient visibility, since no pass computes one of its own. Bad for:

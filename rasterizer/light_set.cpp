@@ -17,6 +17,10 @@ constexpr float widest_flat_cone = 1.1f;
 // Texels beyond the cone or the scene, so that filtering never reads past the border.
 constexpr float border_texels = 2.0f;
 
+glm::vec4 terms_of(const Attenuation& attenuation) {
+    return {attenuation.constant, attenuation.linear, attenuation.quadratic, 0.0f};
+}
+
 // Looks from `eye` along the unit `direction`; any roll.
 glm::mat3 axes_towards(const glm::vec3& direction) {
     const glm::vec3 helper = std::abs(direction.y) < 0.9f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0);
@@ -32,6 +36,7 @@ SpotRecord make_spot(const SpotLight& light, const ShadowSettings& settings) {
     record.cosine_outer = std::cos(light.outer_angle);
     // Equal angles would divide by zero; a ten-thousandth in the cosine is a hard edge.
     record.cosine_inner = std::max(std::cos(light.inner_angle), record.cosine_outer + 1e-4f);
+    record.attenuation = terms_of(light.attenuation);
     record.near_plane = lamp_near_plane;
     record.map = record.cube = -1;
     if (light.outer_angle > widest_flat_cone) return record;
@@ -89,7 +94,8 @@ LightSet::LightSet(const Scene& scene, const ShadowSettings& settings) {
         return static_cast<int>(maps.size()) - 1;
     };
     for (const PointLight& light : scene.point_lights) {
-        points.push_back({light.position, lamp_near_plane, light.intensity, add_point_cube(light.position)});
+        points.push_back({light.position, lamp_near_plane, light.intensity, add_point_cube(light.position),
+                          terms_of(light.attenuation)});
     }
     for (const SpotLight& light : scene.spot_lights) {
         SpotRecord& record = spots.emplace_back(make_spot(light, settings));

@@ -31,6 +31,7 @@ struct PointRecord {
     float near_plane;
     glm::vec3 intensity;
     int cube;
+    glm::vec4 attenuation;  // constant, linear, quadratic
 };
 struct SpotRecord {
     glm::vec3 position;
@@ -44,6 +45,7 @@ struct SpotRecord {
     float near_plane;
     int cube;
     float padding;
+    glm::vec4 attenuation;
 };
 struct DirectionalRecord {
     glm::vec3 direction;

@@ -105,6 +105,36 @@ TEST_P(DirectLightTest, SpotLightFollowsItsCone) {
     }
 }
 
+// Constant, linear and quadratic terms, each alone and together, for both kinds of lamp.
+TEST_P(DirectLightTest, LampsFallOffWithTheirAttenuation) {
+    for (const Attenuation& terms :
+         {Attenuation{1.0f, 0.0f, 0.0f}, Attenuation{0.0f, 1.0f, 0.0f}, Attenuation{0.5f, 0.7f, 0.3f}}) {
+        Scene scene = make_corner();
+        const glm::vec3 axis = glm::normalize(glm::vec3(-0.5f, -1.0f, -0.6f));
+        scene.point_lights.push_back({"lamp", {0.3f, 1.5f, 0.2f}, {3.0f, 2.0f, 1.0f}, terms});
+        scene.spot_lights.push_back({"spot", {0.6f, 2.1f, 0.5f}, axis, {5, 4, 3}, 0.3f, 0.7f, terms});
+        SCOPED_TRACE(fmt::format("{} + {} d + {} d^2", terms.constant, terms.linear, terms.quadratic));
+        expect_direct(
+            context(), scene,
+            [&](const glm::dvec3& p, const glm::dvec3& n) {
+                const auto irradiance = [&](const glm::vec3& position, const glm::vec3& intensity, double cone) {
+                    const glm::dvec3 to_light = glm::dvec3(position) - p;
+                    const double d = glm::length(to_light);
+                    return cone * glm::dvec3(intensity) * std::max(0.0, glm::dot(n, to_light) / d) /
+                           (terms.constant + d * (terms.linear + d * terms.quadratic));
+                };
+                const PointLight& lamp = scene.point_lights[0];
+                const SpotLight& spot = scene.spot_lights[0];
+                const double along = glm::dot(glm::normalize(p - glm::dvec3(spot.position)), glm::dvec3(axis));
+                const double inner = std::cos(0.3), outer = std::cos(0.7);
+                const double cone = std::clamp((along - outer) / (inner - outer), 0.0, 1.0);
+                return irradiance(lamp.position, lamp.intensity, 1.0) +
+                       irradiance(spot.position, spot.intensity, cone * cone);
+            },
+            half_float);
+    }
+}
+
 TEST_P(DirectLightTest, DirectionalLightDependsOnTheCosineOnly) {
     Scene scene = make_corner();
     scene.directional_lights.push_back({"sun", glm::normalize(glm::vec3(-0.4f, -1.0f, -0.7f)), {3.0f, 2.5f, 2.0f}});
