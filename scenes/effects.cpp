@@ -36,14 +36,6 @@ Effect of_materials(EffectKind kind, const std::vector<const Material*>& materia
     return {kind, true, fmt::format("{} of {} materials in use: {}", names.size(), materials.size(), list_of(names))};
 }
 
-template <typename Light>
-Effect of_lights(EffectKind kind, const std::vector<Light>& lights) {
-    if (lights.empty()) return {kind, false, "the scene has none"};
-    std::vector<std::string> names;
-    for (const Light& light : lights) names.push_back(light.name.empty() ? "unnamed" : light.name);
-    return {kind, true, fmt::format("{}: {}", lights.size(), fmt::join(names, ", "))};
-}
-
 // Appends the names of the elements that have a property.
 template <typename Named, typename Property>
 void add_names(std::vector<std::string>& names, const std::vector<Named>& elements, Property has_property) {
@@ -55,6 +47,13 @@ void add_names(std::vector<std::string>& names, const std::vector<Named>& elemen
 Effect of_names(EffectKind kind, const std::vector<std::string>& names, const std::string& reason_if_none) {
     if (names.empty()) return {kind, false, reason_if_none};
     return {kind, true, fmt::format("{}: {}", names.size(), list_of(names))};
+}
+
+template <typename Light>
+Effect of_lights(EffectKind kind, const std::vector<Light>& lights) {
+    std::vector<std::string> names;
+    add_names(names, lights, [](const Light&) { return true; });
+    return of_names(kind, names, "the scene has none");
 }
 
 bool uses_texture(const Material& m) {
