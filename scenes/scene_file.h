@@ -16,8 +16,8 @@
 //     ignore_diffuse_colour_under_texture = false
 //     specular = false                      # true: MTL's Ks and Ns make specular lobes (scenes/import.h)
 //     [materials."brick"]                   # overrides; the name must exist
-//     base_colour = [0.7, 0.6, 0.5]         # also: metallic, roughness, dielectric_reflectance, transmission, emission,
-//                                           # two_sided
+//     base_colour = [0.7, 0.6, 0.5]         # also: metallic, roughness, dielectric_reflectance,
+//                                           # transmission, emission, two_sided
 //     [ground]                              # a level two-sided square under an object that has none; all keys optional
 //     height = 0.0                          # also: centre = [x, any, z], size (metres, its side), base_colour
 //     [environment]
@@ -40,8 +40,8 @@
 //     keys = [{ time = 0.0 }, { time = 2.0, translation = [0, 0, 1], axis = [0, 1, 0], angle = 120.0, scale = 1.0 }]
 //
 // Views and paths of the mesh file are kept, those of the same name replaced. Lights are added to the mesh file's. Keys
-// of a motion are relative to where the object stands otherwise; a loaded scene stands at time 0. Instances are named as
-// the nodes or groups of the mesh file; those of one material that nothing moves are joined under its name.
+// of a motion are relative to where the object stands otherwise; a loaded scene stands at time 0. Instances are named
+// as the nodes or groups of the mesh file; those of one material that nothing moves are joined under its name.
 #pragma once
 
 #include <filesystem>
