@@ -6,10 +6,11 @@ if(no_git)
     set(describe "unknown")
 endif()
 
-file(GLOB sources ${SOURCE_DIR}/pathtracer/*.cpp ${SOURCE_DIR}/pathtracer/*.h)
-foreach(name frames/quantities scenes/camera scenes/light scenes/scene scenes/texture)
-    list(APPEND sources ${SOURCE_DIR}/${name}.cpp ${SOURCE_DIR}/${name}.h)
-endforeach()
+# What a scene file becomes is in the scene's content hash; here is what turns a scene into radiance.
+file(GLOB sources ${SOURCE_DIR}/pathtracer/*.cpp ${SOURCE_DIR}/pathtracer/*.h ${SOURCE_DIR}/frames/quantities.*
+     ${SOURCE_DIR}/scenes/camera.* ${SOURCE_DIR}/scenes/ggx.* ${SOURCE_DIR}/scenes/keyed_curve.*
+     ${SOURCE_DIR}/scenes/light.* ${SOURCE_DIR}/scenes/material.* ${SOURCE_DIR}/scenes/motion.*
+     ${SOURCE_DIR}/scenes/scene.* ${SOURCE_DIR}/scenes/specular_albedo.* ${SOURCE_DIR}/scenes/texture.*)
 list(SORT sources)
 set(hashes "")
 foreach(file ${sources})

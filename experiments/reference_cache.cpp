@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <exception>
+#include <optional>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -18,7 +19,7 @@
 namespace plumb {
 namespace {
 
-constexpr int file_format = 1;  // of the facts below
+constexpr int file_format = 2;  // of the key and the facts below
 
 std::string checksum(const Frame& frame) {
     XXH3_state_t* state = XXH3_createState();
@@ -71,8 +72,18 @@ std::string view_key(const View& view) {
     for (int column = 0; column < 4; ++column) {
         for (int row = 0; row < 4; ++row) text += fmt::format(" {:a}", camera.world_from_camera[column][row]);
     }
-    return text + fmt::format(" fov {:a} near {:a} far {:a} size {}x{}", camera.vertical_fov, camera.near_plane,
-                              camera.far_plane, view.width(), view.height());
+    // The width that is seen tells views with a guard band apart.
+    return text + fmt::format(" sees {:a} {:a} near {:a} far {:a} aperture {:a} focus {:a} size {}x{}",
+                              view.tan_half().x, view.tan_half().y, camera.near_plane, camera.far_plane,
+                              camera.aperture_radius, camera.focus_distance, view.width(), view.height());
+}
+
+std::string view_key(const std::optional<View>& view) { return view ? view_key(*view) : "none"; }
+
+std::string oracle_key(const std::optional<OracleSettings>& oracle) {
+    if (!oracle) return "none";
+    return fmt::format("{} layers {:a} apart of {}", oracle->layers, oracle->minimum_separation,
+                       view_key(oracle->view));
 }
 
 void write_reference(const std::filesystem::path& file, const std::string& key, const ReferenceResult& result) {
@@ -87,19 +98,25 @@ void write_reference(const std::filesystem::path& file, const std::string& key, 
 
 }  // namespace
 
-std::string reference_key(const Scene& scene, const View& view, const ReferenceSettings& settings) {
-    std::vector<std::string> planes = settings.quantities.planes;
+std::string reference_key(const Scene& scene, const View& view, const ReferenceSettings& settings,
+                          const TimeSpan& span) {
+    const Quantities& quantities = settings.quantities;
+    std::vector<std::string> planes = quantities.planes;
     std::ranges::sort(planes);
-    return fmt::format(
-        "format {}; integrator {}; scene {:016x}; {}; previous {}; planes {}; ao_radius {:a}; ao_falloff {}; bounces "
-        "{}; "
-        "indirect_radius {:a}; samples {}; target_error {:a}; seed {}; minimum_separation {:a}; antialias {}; "
-        "emitter_sampling {}",
-        file_format, build_facts().integrator_hash, scene.content_hash(), view_key(view),
-        settings.previous_view ? view_key(*settings.previous_view) : "none", fmt::join(planes, ","),
-        settings.quantities.ao_radius, to_string(settings.quantities.ao_falloff), settings.quantities.bounces,
-        settings.quantities.indirect_radius, settings.samples, settings.target_error, settings.seed,
-        settings.minimum_separation, settings.antialias, static_cast<int>(settings.emitter_sampling));
+    std::string key = fmt::format("format {}; integrator {}; scene {:016x}; time {:a} to {:a}; {}; previous {}",
+                                  file_format, build_facts().integrator_hash, scene.content_hash(), span.begin,
+                                  span.end, view_key(view), view_key(settings.previous_view));
+    key += fmt::format("; planes {}; ao_radius {:a}; ao_falloff {}; bounces {}; indirect_radius {:a}",
+                       fmt::join(planes, ","), quantities.ao_radius, to_string(quantities.ao_falloff),
+                       quantities.bounces, quantities.indirect_radius);
+    key += fmt::format("; samples {} to {}; target_error {:a}; seed {}; minimum_separation {:a}; antialias {}",
+                       settings.first_sample, settings.samples, settings.target_error, settings.seed,
+                       settings.minimum_separation, settings.antialias);
+    key +=
+        fmt::format("; emitter_sampling {}; points {}; roulette_after {}; oracle {}; shutter opens at {}",
+                    static_cast<int>(settings.emitter_sampling), static_cast<int>(settings.points),
+                    settings.roulette_after, oracle_key(settings.oracle), view_key(settings.view_at_shutter_opening));
+    return key;
 }
 
 ReferenceCache::ReferenceCache(std::filesystem::path folder) : folder_(std::move(folder)) {}

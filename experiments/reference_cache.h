@@ -1,7 +1,8 @@
 // References kept on disk, found again by what they depend on.
 //
-// The key is a text that names everything that can change a pixel of a reference: the scene's content hash, the camera,
-// the resolution, quantities, samples, target error, seed, and a hash of the integrator's source files. The file is
+// The key is a text that names everything that can change a pixel of a reference: the scene's content hash and the time
+// it spans, the camera and its lens, the resolution, every setting of the reference, and a hash of the integrator's
+// source files, so that a changed integrator never meets the reference of the one before. The file is
 // named by a hash of the key and carries the whole key and a checksum of its pixels, so that neither a stale nor a
 // damaged file passes. Two programs that want the same reference at once: one renders, the other waits for it and reads
 // the result.
@@ -15,7 +16,9 @@
 
 namespace plumb {
 
-std::string reference_key(const Scene& scene, const View& view, const ReferenceSettings& settings);
+// `span` is the path tracer's.
+std::string reference_key(const Scene& scene, const View& view, const ReferenceSettings& settings,
+                          const TimeSpan& span = {});
 
 struct CachedReference {
     ReferenceResult result;

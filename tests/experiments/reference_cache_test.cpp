@@ -159,6 +159,10 @@ TEST(ReferenceKey, ChangesWithEverythingThatCanChangeAPixelAndWithNothingElse) {
     EXPECT_NE(changed([](auto& s) { s.antialias = true; }), key);
     EXPECT_NE(changed([](auto& s) { s.emitter_sampling = EmitterSampling::lights; }), key);
     EXPECT_NE(changed([&](auto& s) { s.previous_view = view; }), key);
+    EXPECT_NE(changed([](auto& s) { s.first_sample = 2; }), key);
+    EXPECT_NE(changed([](auto& s) { s.roulette_after = 0; }), key);
+    EXPECT_NE(changed([](auto& s) { s.points = SamplePoints::random; }), key);
+    EXPECT_NE(changed([&](auto& s) { s.view_at_shutter_opening = view; }), key);
     EXPECT_NE(changed([](auto& s) { s.quantities.ao_radius = 2.0f; }), key);
     EXPECT_NE(changed([](auto& s) { s.quantities.ao_falloff = Falloff::cubic; }), key);
     EXPECT_NE(changed([](auto& s) { s.quantities.bounces = 2; }), key);
@@ -172,12 +176,42 @@ TEST(ReferenceKey, ChangesWithEverythingThatCanChangeAPixelAndWithNothingElse) {
 
     EXPECT_NE(reference_key(scene, View(scene.camera("front"), 33, 18), settings), key);
     EXPECT_NE(reference_key(scene, View(scene.camera("gap"), 32, 18), settings), key);
+    EXPECT_NE(reference_key(scene, view, settings, {0.0, 0.5}), key);
+    EXPECT_NE(reference_key(scene, view, settings, {0.25, 0.5}), reference_key(scene, view, settings, {0.0, 0.5}));
+    EXPECT_NE(reference_key(scene, view, settings, {0.0, 0.25}), reference_key(scene, view, settings, {0.0, 0.5}));
+    Camera lens = scene.camera("front");
+    lens.aperture_radius = 0.01f;
+    const std::string with_lens = reference_key(scene, View(lens, 32, 18), settings);
+    EXPECT_NE(with_lens, key);
+    lens.focus_distance += 0.5f;
+    EXPECT_NE(reference_key(scene, View(lens, 32, 18), settings), with_lens);
     Camera moved = scene.camera("front");
     moved.world_from_camera[3][0] = std::nextafter(moved.world_from_camera[3][0], 1.0f);
     EXPECT_NE(reference_key(scene, View(moved, 32, 18), settings), key) << "a camera moved by one last bit";
     Scene painted = scene;
     painted.materials[0].base_colour.x += 0.01f;
     EXPECT_NE(reference_key(painted, view, settings), key);
+}
+
+TEST(ReferenceKey, ChangesWithEverythingThatAnOracleIsMadeOf) {
+    const Scene scene = make_cornell();
+    const View view(scene.camera("front"), 32, 18);
+    const auto key_of = [&](const std::optional<OracleSettings>& oracle) {
+        ReferenceSettings settings;
+        settings.quantities.planes = {"ao"};
+        settings.oracle = oracle;
+        return reference_key(scene, view, settings);
+    };
+    const std::string key = key_of(OracleSettings{view, 1, 0.1f});
+    EXPECT_EQ(key_of(OracleSettings{view, 1, 0.1f}), key);
+    EXPECT_NE(key_of(std::nullopt), key);
+    EXPECT_NE(key_of(OracleSettings{view, 2, 0.1f}), key);
+    EXPECT_NE(key_of(OracleSettings{view, 1, 0.2f}), key);
+    EXPECT_NE(key_of(OracleSettings{View(scene.camera("gap"), 32, 18), 1, 0.1f}), key);
+    EXPECT_NE(key_of(OracleSettings{view.with_guard_band(4), 1, 0.1f}), key);
+    // As many pixels, but they see less.
+    EXPECT_NE(key_of(OracleSettings{View(scene.camera("front"), 40, 26), 1, 0.1f}),
+              key_of(OracleSettings{view.with_guard_band(4), 1, 0.1f}));
 }
 
 }  // namespace
