@@ -123,6 +123,12 @@ private:
     }
 };
 
+// A third number for routines that need it, hashed from the two: which cell it falls into tells nothing of theirs.
+inline float third_number(glm::vec2 u) {
+    const auto bits = static_cast<std::uint64_t>(u.x * 0x1p24f) << 24 | static_cast<std::uint64_t>(u.y * 0x1p24f);
+    return to_unit_interval(static_cast<std::uint32_t>(mix_bits(bits)));
+}
+
 // The planted bias: of the samples drawn with `u` so many are left out that the density of u becomes
 // 1 + 0.01 cos(pi u), to first order, instead of 1.
 inline bool is_left_out(float u, float thinning) {

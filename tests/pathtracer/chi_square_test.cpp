@@ -91,7 +91,7 @@ TEST(ChiSquare, ConeIsUniform) {
     const glm::vec3 axis = glm::normalize(glm::vec3(-2, 3, 1));
     glm::vec3 tangent, bitangent;
     complete_basis(axis, tangent, bitangent);
-    for (const float angle : {0.00465f, 0.3f, 1.5707963f}) {
+    for (const float angle : {0.00465f, 1.5707963f}) {
         const float height = cap_height(angle);
         // Rings of equal solid angle; their density times their solid angle.
         const double solid_angle = glm::two_pi<double>() * (2.0 * std::pow(std::sin(0.5 * angle), 2.0));
@@ -197,7 +197,7 @@ void expect_lobe_density(const LobeCase& c) {
     const SpecularLobe lobe(glm::vec3(0.04f), glm::vec3(1.0f), c.alpha, normal, wo);
     const HalfVectorCells cells(normal, aside, wo, c.alpha, 6);
     // Up to two thirds of the samples of the roughest lobes go below the horizon, and tell nothing of where.
-    constexpr double kept = 0.5;
+    const double kept = c.alpha > 0.5f ? 0.5 : 0.7;
     expect_density(
         name_of(c), cells.integrals([&](const glm::vec3& wi) { return lobe.evaluate(wi).density; }),
         Rejection::possible,
