@@ -110,6 +110,7 @@ TEST(ChiSquare, ConeIsUniform) {
 
 TEST(ChiSquare, DiscreteDistributionChoosesByWeight) {
     std::vector<double> weights;
+    weights.reserve(50);
     for (int i = 0; i < 50; ++i) weights.push_back(i % 7 == 3 ? 0.0 : 0.2 + (i * 37 % 11) * (i % 5 == 0 ? 4.0 : 1.0));
     const DiscreteDistribution distribution(weights);
     std::vector<double> probabilities(50);

@@ -221,7 +221,10 @@ TEST(SpecularLobe, SamplesAgreeWithEvaluation) {
             const SpecularLobe lobe = white_lobe(alpha, cosine);
             for (int i = 0; i < 2000; ++i) {
                 glm::vec2 u = IndependentNumbers(4, i).u;
-                if (i < 9) u = {0.5f * last * static_cast<float>(i % 3), 0.5f * last * static_cast<float>(i / 3)};
+                if (i < 9) {
+                    const int row = i / 3, column = i % 3;
+                    u = 0.5f * last * glm::vec2(column, row);
+                }
                 const SpecularLobeSample sample = lobe.sample(u);
                 if (sample.weight == glm::vec3(0.0f)) continue;
                 const SpecularLobeValue value = lobe.evaluate(sample.direction);
