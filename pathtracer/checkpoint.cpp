@@ -60,7 +60,8 @@ std::uint64_t hash(const std::string& bytes) { return XXH3_64bits(bytes.data(), 
 
 }  // namespace
 
-CheckpointKey CheckpointKey::of(const Scene& scene, const View& view, const ReferenceSettings& settings) {
+CheckpointKey CheckpointKey::of(const Scene& scene, const TimeSpan& span, const View& view,
+                                const ReferenceSettings& settings) {
     CheckpointKey key;
     key.scene = scene.content_hash();
     std::string bytes;
@@ -68,6 +69,7 @@ CheckpointKey CheckpointKey::of(const Scene& scene, const View& view, const Refe
     key.view = hash(bytes);
 
     bytes.clear();
+    append(bytes, span.begin), append(bytes, span.end);
     const Quantities& quantities = settings.quantities;
     for (const std::string& plane : quantities.planes) bytes += plane + '\n';
     append(bytes, quantities.ao_radius), append(bytes, quantities.ao_falloff);

@@ -14,7 +14,9 @@ namespace plumb {
 struct CheckpointKey {
     std::uint64_t scene = 0, view = 0, settings = 0;
 
-    static CheckpointKey of(const Scene& scene, const View& view, const ReferenceSettings& settings);
+    // `span` is the path tracer's.
+    static CheckpointKey of(const Scene& scene, const TimeSpan& span, const View& view,
+                            const ReferenceSettings& settings);
 };
 
 // Samples begin to end - 1 of every pixel are in the sums.

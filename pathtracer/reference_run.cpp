@@ -78,7 +78,7 @@ ReferenceRun::ReferenceRun(const TracedScene& scene, const EnvironmentDistributi
       accumulation_(view.width(), view.height(), plan_.estimation, plan_.primary_rays_are_sampled,
                     light_level(scene.scene())),
       hits_(first_layer(scene, view)),
-      key_(CheckpointKey::of(scene.scene(), view, settings)) {
+      key_(CheckpointKey::of(scene.scene(), scene.span(), view, settings)) {
     state_.begin = state_.end = settings.first_sample;
     find_exact_parts();
 }

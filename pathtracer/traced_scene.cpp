@@ -98,7 +98,8 @@ SpecularSurface specular_side(const SurfaceSample& sample) {
 
 }  // namespace
 
-TracedScene::TracedScene(const Scene& scene, const TimeSpan& span) : scene_(scene), parts_(scene.instances.size()) {
+TracedScene::TracedScene(const Scene& scene, const TimeSpan& span)
+    : scene_(scene), span_(span), parts_(scene.instances.size()) {
     check_indices(scene);
     device_ = rtcNewDevice(nullptr);
     if (!device_) {

@@ -27,6 +27,7 @@ public:
     TracedScene& operator=(const TracedScene&) = delete;
 
     const Scene& scene() const { return scene_; }
+    const TimeSpan& span() const { return span_; }
     const Material& material(std::uint32_t instance) const { return *parts_[instance].material; }
     std::uint32_t triangle_count(std::uint32_t instance) const { return parts_[instance].triangle_count; }
     bool has_specular_lobes() const { return has_specular_lobes_; }
@@ -96,6 +97,7 @@ private:
     static void reject_what_layers_lack(const RTCFilterFunctionNArguments* arguments);
 
     const Scene& scene_;
+    TimeSpan span_;
     RTCDevice device_ = nullptr;
     RTCScene embree_scene_ = nullptr;
     std::vector<Part> parts_;
