@@ -173,6 +173,20 @@ Enclosure sun_in_bowl() {
             .samples = 256};
 }
 
+// The same flux from a sun with a disc, whose directions spread by 34 degrees.
+Enclosure broad_sun_in_bowl() {
+    return {.name = "BroadSunInBowl",
+            .build =
+                [](Scene& scene, bool smooth) {
+                    add_sphere(scene, smooth, rings / 2);
+                    scene.directional_lights.push_back({"sun", {0.0f, -1.0f, 0.0f}, glm::vec3(4.0f), 0.6f});
+                },
+            .indirect = albedo / pi * albedo * 4.0 * pi / (4.0 * pi),
+            .per_bounce = albedo / 2.0,
+            .uneven = true,
+            .samples = 768};
+}
+
 // Of the sky each point of the bowl sees the half that the bowl leaves open.
 Enclosure sky_over_bowl() {
     return {.name = "SkyOverBowl",
@@ -187,22 +201,7 @@ Enclosure sky_over_bowl() {
             .samples = 256};
 }
 
-// A sky that grows brighter towards one side and towards the zenith, with one bright texel. All that passes the bowl's
-// opening, pi times its irradiance, arrives in the bowl.
-void add_uneven_sky(Scene& scene) {
-    Texture sky;
-    sky.width = 32, sky.height = 16, sky.wrap_v = TextureWrap::clamp;
-    for (int j = 0; j < sky.height; ++j) {
-        for (int i = 0; i < sky.width; ++i) {
-            const float ramp = 0.5f + 0.05f * static_cast<float>(31 - std::abs(i - 16) - j);
-            const half bright = i == 9 && j == 3 ? 30.0f : ramp;
-            sky.texels.insert(sky.texels.end(), {bright, bright, bright, half(1.0f)});
-        }
-    }
-    scene.environment = {glm::vec3(1.0f), static_cast<int>(scene.textures.size()), 0.4f};
-    scene.textures.push_back(sky);
-}
-
+// All that passes the bowl's opening, pi times the sky's irradiance, arrives in the bowl.
 Enclosure image_over_bowl() {
     Scene sky;
     add_uneven_sky(sky);
@@ -245,9 +244,9 @@ const std::vector<Way> ways = {
 };
 
 const std::vector<Enclosure>& enclosures() {
-    static const std::vector<Enclosure> all = {point_at_centre(), spot_at_centre(), emissive_sphere(),
-                                               emissive_half(),   glowing_ball(),   sun_in_bowl(),
-                                               sky_over_bowl(),   image_over_bowl()};
+    static const std::vector<Enclosure> all = {point_at_centre(),   spot_at_centre(), emissive_sphere(),
+                                               emissive_half(),     glowing_ball(),   sun_in_bowl(),
+                                               broad_sun_in_bowl(), sky_over_bowl(),  image_over_bowl()};
     return all;
 }
 

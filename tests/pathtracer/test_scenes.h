@@ -53,6 +53,21 @@ inline void add_quads(Scene& scene, int material, const std::vector<std::vector<
     scene.meshes.push_back(mesh);
 }
 
+// A sky that grows brighter towards one side and towards the zenith, with one bright texel.
+inline void add_uneven_sky(Scene& scene) {
+    Texture sky;
+    sky.width = 32, sky.height = 16, sky.wrap_v = TextureWrap::clamp;
+    for (int j = 0; j < sky.height; ++j) {
+        for (int i = 0; i < sky.width; ++i) {
+            const float ramp = 0.5f + 0.05f * static_cast<float>(31 - std::abs(i - 16) - j);
+            const half bright = i == 9 && j == 3 ? 30.0f : ramp;
+            sky.texels.insert(sky.texels.end(), {bright, bright, bright, half(1.0f)});
+        }
+    }
+    scene.environment = {glm::vec3(1.0f), static_cast<int>(scene.textures.size()), 0.4f};
+    scene.textures.push_back(sky);
+}
+
 // The horizontal square |x|, |z| <= half at height y, seen from above.
 inline std::vector<glm::vec3> floor_quad(float half, float y = 0.0f) {
     return {{-half, y, half}, {half, y, half}, {half, y, -half}, {-half, y, -half}};
