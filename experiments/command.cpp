@@ -1,6 +1,7 @@
 #include "experiments/command.h"
 
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <string>
@@ -74,6 +75,8 @@ int run_action(const Action& action) {
 }  // namespace
 
 int run_command_line(int argc, const char* const* argv) {
+    // A file that may not grow further (ulimit -f) is an error to report, not an end without a word.
+    std::signal(SIGXFSZ, SIG_IGN);
     CLI::App app("Plumbline measures real-time global illumination against a path-traced truth.", "plumbline");
     app.set_version_flag("--version",
                          fmt::format("plumbline {} ({})", build_facts().version, build_facts().git_describe));
@@ -82,6 +85,7 @@ int run_command_line(int argc, const char* const* argv) {
     app.fallthrough();
 
     CommonOptions common;
+    common.arguments.assign(argv + std::min(argc, 1), argv + argc);
     common.scenes_dirs = scenes_dirs_of_environment();
     app.add_option("--scenes-dir", common.scenes_dirs, "Folder of external scenes (repeatable; else PLUMBLINE_SCENES)")
         ->type_name("FOLDER")

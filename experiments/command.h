@@ -15,6 +15,7 @@ namespace plumb {
 // Options that every subcommand understands.
 struct CommonOptions {
     std::vector<std::filesystem::path> scenes_dirs;  // folders of external scenes
+    std::vector<std::string> arguments;              // as typed, behind the program's name
 };
 
 // Set by a subcommand whose options were given: what to run; the result is the exit code.

@@ -1,5 +1,6 @@
-// `plumbline reference`: the path-traced planes of one view.
-#include <cstdint>
+// `plumbline reference`: the path-traced planes of one view, in one run or in shards that are merged.
+#include <algorithm>
+#include <atomic>
 #include <memory>
 #include <string>
 
@@ -9,12 +10,10 @@
 #include "experiments/command.h"
 #include "experiments/exit_code.h"
 #include "experiments/interruption.h"
-#include "experiments/pictures.h"
 #include "experiments/progress_line.h"
 #include "experiments/reference_cache.h"
-#include "experiments/scene_finder.h"
-#include "experiments/view_options.h"
-#include "pathtracer/reference.h"
+#include "experiments/reference_options.h"
+#include "pathtracer/reference_error.h"
 
 namespace plumb {
 namespace {
@@ -23,49 +22,130 @@ constexpr const char* examples = R"(Examples:
   plumbline reference cornell --samples 1024
   plumbline reference colonnade --view court --target-error 0.01 --planes ao,indirect,total
   plumbline reference sponza.toml --seed 7 --threads 4 --output out/sponza
-Ctrl-C leaves a checkpoint beside the files; the same command resumes it.)";
+Shards, on as many machines as there are; merged, they have the bits of one run:
+  plumbline reference cornell --samples 0..512
+  plumbline reference cornell --samples 512..1024
+  plumbline reference cornell --merge out/cornell_front.*.shard
+The best that any method could make of two layers, and of all that is in view:
+  plumbline reference clutter --planes ao,indirect --oracle 2 --oracle-guard-band 64 --separation 0.05
+  plumbline reference clutter --planes ao,indirect --oracle 0
+Motion blur along a camera path:
+  plumbline reference cornell --path strafe --shutter 0.5..0.52
 
-struct Options {
-    ViewOptions view;
+Ctrl-C and SIGTERM leave a checkpoint beside the files, as does every minute; the same command resumes it.)";
+
+std::string million_rays_per_second(std::uint64_t rays, double seconds) {
+    return fmt::format("{:.2f} M rays/s", seconds > 0.0 ? static_cast<double>(rays) / seconds * 1e-6 : 0.0);
+}
+
+// One reference on its way: the scene at its time, the view, and the settings.
+struct Task {
+    Task(const ReferenceOptions& given, const CommonOptions& common)
+        : options(given),
+          scene(given.view.load(SceneFinder(common.scenes_dirs))),
+          view(given.view.make_view(scene)),
+          settings(given.settings_for(scene, view)) {}
+
+    // The name holds the key's hash: other settings never resume it.
+    std::filesystem::path checkpoint() const {
+        const std::string key = reference_key(scene, view, settings, options.span);
+        return options.view.output / ReferenceCache("").file_of(key).filename().replace_extension(".partial");
+    }
+
+    void write(ReferenceResult result) const {
+        if (!result.exact) {
+            fmt::print(stderr,
+                       "warning: a pixel is so much brighter than the lights would have it that its sum was rounded; "
+                       "another split into shards may differ in last bits\n");
+        }
+        result.frame.facts["scene"] = options.view.scene;
+        result.frame.facts["view"] = view.camera().name;
+        if (options.has_shutter) {
+            result.frame.facts["shutter"] = fmt::format("{}..{}", options.span.begin, options.span.end);
+        }
+        write_frame_files(result.frame, options.view, view.camera().name, "reference");
+    }
+
+    std::string name() const { return fmt::format("{} / {}", options.view.scene, view.camera().name); }
+
+    const ReferenceOptions& options;
+    Scene scene;
+    View view;
     ReferenceSettings settings;
-    int threads = 0;
 };
 
-int render(const Options& options, const CommonOptions& common) {
-    const Scene scene = SceneFinder(common.scenes_dirs).load(options.view.scene);
-    const View view = options.view.make_view(scene);
-    ReferenceSettings settings = options.settings;
-    settings.quantities = options.view.read_quantities();
+int interrupted(const std::filesystem::path& checkpoint) {
+    fmt::print("the same command resumes from '{}'\n", checkpoint.string());
+    return exit_interrupted;
+}
+
+int render(const ReferenceOptions& options, const CommonOptions& common) {
+    if (options.is_shard && options.settings.target_error > 0.0) {
+        throw ReferenceError(
+            "--target-error does not go with a shard: where it stops depends on all samples; leave it away");
+    }
+    const std::atomic<bool>& stop = interruption_flag();
+    require_writable_folder(options.view.output);
+    const Task task(options, common);
 
     ProgressLine progress;
     ReferenceControl control;
     control.threads = options.threads;
-    control.stop = &interruption_flag();
-    // The checkpoint's name holds the key's hash: other settings never resume it.
-    control.checkpoint =
-        options.view.output /
-        ReferenceCache("").file_of(reference_key(scene, view, settings)).filename().replace_extension(".partial");
-    std::filesystem::create_directories(options.view.output);
+    control.stop = &stop;
+    control.checkpoint = task.checkpoint();
+    int samples_done = 0;
     control.on_progress = [&](const ReferenceProgress& done) {
+        samples_done = done.samples_done;
         progress.show(static_cast<double>(done.samples_done) / std::max(1, done.samples_wanted),
                       fmt::format("{} of {} samples, {:.2f} M rays/s, relative error {:.3g}", done.samples_done,
                                   done.samples_wanted, done.rays_per_second * 1e-6, done.relative_error));
     };
-    ReferenceResult result = PathTracer(scene).render(view, settings, control);
+    const PathTracer tracer(task.scene, options.span);
+    if (options.is_shard) {
+        const std::filesystem::path file = options.shard_file(task.view);
+        const bool complete = tracer.render_shard(task.view, task.settings, file, control);
+        progress.clear();
+        if (!complete) {
+            fmt::print("Interrupted after {} samples per pixel of the shard; ", samples_done);
+            return interrupted(control.checkpoint);
+        }
+        std::filesystem::remove(control.checkpoint);
+        fmt::print(
+            "{}: samples {} to {} per pixel\n{}\nOnce there are shards from sample 0 to the last, merge them:\n"
+            "  {}\n",
+            task.name(), task.settings.first_sample, task.settings.samples - 1, file.string(),
+            merge_command(common.arguments, options, task.view));
+        return exit_fine;
+    }
+
+    ReferenceResult result = tracer.render(task.view, task.settings, control);
     progress.clear();
     if (!result.complete) {
-        fmt::print("Interrupted after {} samples per pixel; the same command resumes from '{}'\n", result.samples,
-                   control.checkpoint.string());
-        return exit_interrupted;
+        fmt::print("Interrupted after {} samples per pixel; ", result.samples);
+        return interrupted(control.checkpoint);
     }
-    fmt::print("{} / {}: {} samples per pixel, {:.1f} s, {:.2f} M rays/s\n", options.view.scene, view.camera().name,
-               result.samples, result.seconds,
-               result.seconds > 0 ? static_cast<double>(result.rays) / result.seconds * 1e-6 : 0.0);
-    result.frame.facts["scene"] = options.view.scene;
-    result.frame.facts["view"] = view.camera().name;
-    result.frame.facts["samples"] = fmt::format("{}", result.samples);
-    write_frame_files(result.frame, options.view, view.camera().name, "reference");
+    fmt::print("{}: {} samples per pixel, {:.1f} s, {}\n", task.name(), result.samples, result.seconds,
+               million_rays_per_second(result.rays, result.seconds));
+    task.write(std::move(result));
     std::filesystem::remove(control.checkpoint);
+    return exit_fine;
+}
+
+int merge(const ReferenceOptions& options, const CommonOptions& common) {
+    require_writable_folder(options.view.output);
+    const Task task(options, common);
+    try {
+        ReferenceResult result =
+            PathTracer(task.scene, options.span).merge(task.view, task.settings, options.merge, options.threads);
+        fmt::print("{}: {} samples per pixel of {} shards, {:.1f} s, {}\n", task.name(), result.samples,
+                   options.merge.size(), result.seconds, million_rays_per_second(result.rays, result.seconds));
+        task.write(std::move(result));
+    } catch (const ReferenceError& error) {
+        throw ReferenceError(fmt::format(
+            "{}\n(--merge wants the scene, view, size, planes and all other options that the shards were rendered "
+            "with, but --samples; nothing was written)",
+            error.what()));
+    }
     return exit_fine;
 }
 
@@ -73,32 +153,14 @@ int render(const Options& options, const CommonOptions& common) {
 
 void add_reference_command(CLI::App& app, const CommonOptions& common, Action& action) {
     CLI::App* command = app.add_subcommand("reference", "Path trace one view: the truth")->group("Render");
-    auto options = std::make_shared<Options>();
-    options->view.add_to(*command, {"ao", "direct", "indirect", "total"});
-    const auto even = [](const std::string& text) {
-        return text.empty() || (text.back() - '0') % 2 == 0 ? std::string()
-                                                            : "must be even, because the reference keeps two halves";
-    };
-    command
-        ->add_option("--samples", options->settings.samples, "Samples per pixel (even), the most with a target error")
-        ->check(CLI::Range(2, 1 << 24))
-        ->check(CLI::Validator(even, "EVEN"))
-        ->capture_default_str();
-    command->add_option("--target-error", options->settings.target_error, "Stop below this relative standard error")
-        ->check(CLI::Range(0.0, 1.0));
-    command->add_option("--seed", options->settings.seed, "Seed of the samples")->capture_default_str();
-    command
-        ->add_option("--separation", options->settings.minimum_separation,
-                     "Metres between the layers, for layer2.* planes")
-        ->check(CLI::NonNegativeNumber)
-        ->capture_default_str();
-    command->add_flag("--antialias", options->settings.antialias, "Spread primary rays over the pixel");
-    command->add_option("--threads", options->threads, "Threads; 0: all")
-        ->check(CLI::NonNegativeNumber)
-        ->capture_default_str();
+    auto options = std::make_shared<ReferenceOptions>();
+    options->add_to(*command);
     command->footer(examples);
-    command->callback(
-        [options, &common, &action] { action = [options, &common] { return render(*options, common); }; });
+    command->callback([options, &common, &action] {
+        action = [options, &common] {
+            return options->merge.empty() ? render(*options, common) : merge(*options, common);
+        };
+    });
 }
 
 }  // namespace plumb

@@ -24,6 +24,7 @@ namespace {
 constexpr const char* examples = R"(Examples:
   plumbline render cornell --method two_layers
   plumbline render clutter --method one_layer --set ao.samples=50 --set ao.blur.radius=0 --explain
+  plumbline render cornell --path strafe --time 0.5
   plumbline render colonnade --method mine.toml --backend osmesa --planes total,layer2.depth
   plumbline render cornell --print-method          the method with all its parameters, as TOML)";
 
@@ -71,7 +72,7 @@ int render(const Options& options, const CommonOptions& common) {
         fmt::print("{}", print_method(method));
         return exit_fine;
     }
-    const Scene scene = SceneFinder(common.scenes_dirs).load(options.view.scene);
+    const Scene scene = options.view.load(SceneFinder(common.scenes_dirs));
     const View view = options.view.make_view(scene);
     Frame truth;
     if (!options.truth.empty()) truth = read_exr(options.truth);

@@ -13,6 +13,7 @@
 #include "experiments/interruption.h"
 #include "experiments/runner.h"
 #include "experiments/summary.h"
+#include "experiments/view_options.h"
 
 namespace plumb {
 namespace {
@@ -43,6 +44,7 @@ int run(const Options& options, const CommonOptions& common) {
     if (options.quick) make_quick(experiment);
     RunOptions run_options = options.run;
     if (run_options.output.empty()) run_options.output = std::filesystem::path("out") / experiment.name;
+    require_writable_folder(run_options.output);
     run_options.write_frames = !options.no_frames;
     run_options.stop = &interruption_flag();
     run_options.command =

@@ -1,13 +1,18 @@
 #include "experiments/view_options.h"
 
+#include <cerrno>
 #include <cmath>
+#include <cstring>
+#include <system_error>
 
 #include <CLI/CLI.hpp>
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "experiments/pictures.h"
-#include "experiments/scene_finder.h"
 #include "frames/exr.h"
+#include "frames/image_error.h"
 #include "frames/picture.h"
 #include "metrics/comparison.h"
 
@@ -18,7 +23,14 @@ void ViewOptions::add_to(CLI::App& command, const std::vector<std::string>& defa
     command.add_option("scene", scene, "Built-in scene, scene of the scenes folder, or file")
         ->required()
         ->type_name("SCENE");
-    command.add_option("--view", view, "Camera by name; the scene's first by default")->type_name("NAME");
+    CLI::Option* view_option =
+        command.add_option("--view", view, "Camera by name; the scene's first by default")->type_name("NAME");
+    command.add_option("--path", path, "Camera path instead of a view; where on it, --time tells")
+        ->type_name("NAME")
+        ->excludes(view_option);
+    command.add_option("--time", time, "Seconds of scene time: where moving objects and the path's camera are")
+        ->check(CLI::Number)
+        ->capture_default_str();
     command.add_option("--size", size, "Width and height in pixels")
         ->expected(2)
         ->check(CLI::Range(1, 16384))
@@ -54,7 +66,31 @@ Quantities ViewOptions::read_quantities() const {
     return result;
 }
 
-View ViewOptions::make_view(const Scene& loaded) const { return View(choose_camera(loaded, view), size[0], size[1]); }
+Scene ViewOptions::load(const SceneFinder& finder) const {
+    Scene loaded = finder.load(scene);
+    loaded.move_to(time);
+    return loaded;
+}
+
+View ViewOptions::make_view(const Scene& loaded, double at) const {
+    const Camera camera = path.empty() ? choose_camera(loaded, view) : loaded.path(path).at(static_cast<float>(at));
+    return View(camera, size[0], size[1]);
+}
+
+void require_writable_folder(const std::filesystem::path& folder) {
+    const auto refuse = [&folder](int error) {
+        throw ImageError(fmt::format("cannot write into folder '{}': {}; choose another with --output", folder.string(),
+                                     std::strerror(error)));
+    };
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error) refuse(error.value());
+    const auto probe = folder / fmt::format(".plumbline-{}.tmp", ::getpid());
+    const int descriptor = ::open(probe.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+    if (descriptor < 0) refuse(errno);
+    ::close(descriptor);
+    std::filesystem::remove(probe, error);
+}
 
 void write_frame_files(const Frame& frame, const ViewOptions& options, const std::string& view,
                        const std::string& name) {

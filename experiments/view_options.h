@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "experiments/command.h"
+#include "experiments/scene_finder.h"
 #include "frames/frame.h"
 #include "frames/quantities.h"
 #include "scenes/camera.h"
@@ -15,6 +16,8 @@ namespace plumb {
 
 struct ViewOptions {
     std::string scene, view;
+    std::string path;   // a camera path that takes the view's place
+    double time = 0.0;  // seconds of scene time: where the path's camera and moving objects are
     std::vector<int> size = {960, 540};
     std::vector<std::string> planes;
     Quantities quantities;
@@ -23,8 +26,15 @@ struct ViewOptions {
 
     void add_to(CLI::App& command, const std::vector<std::string>& default_planes);
     Quantities read_quantities() const;
-    View make_view(const Scene& loaded) const;
+    // The scene at `time`. Throws SceneError.
+    Scene load(const SceneFinder& finder) const;
+    View make_view(const Scene& loaded) const { return make_view(loaded, time); }
+    View make_view(const Scene& loaded, double at) const;
 };
+
+// Makes the folder where it is missing. Throws ImageError unless files can be made in it, so that nobody learns it
+// after hours of work.
+void require_writable_folder(const std::filesystem::path& folder);
 
 // Writes OUTPUT/SCENE.VIEW.NAME.exr and one PNG per plane (no half-buffers or variances), and prints their paths.
 // Radiance is exposed so that its 99th percentile is nearly white.

@@ -116,24 +116,6 @@ TEST(CommandLine, ImagesOfDifferentSizesCannotBeCompared) {
            AllOf(HasSubstr("32x32"), HasSubstr("16x16")));
 }
 
-TEST(CommandLine, AnInterruptedReferenceIsResumedByTheSameCommand) {
-    const TemporaryFolder folder;
-    const std::string command = std::string("'") + PLUMBLINE_PROGRAM +
-                                "' reference cornell --size 32 18 --planes ao --output '" + folder.path.string() +
-                                "' --samples ";
-    // So many samples that no machine is done within the two seconds after which it is interrupted.
-    const ProgramRun stopped = run_shell("timeout --preserve-status -s INT 2 " + command + "16777216");
-    EXPECT_EQ(stopped.exit_code, 130) << stopped.output;
-    EXPECT_THAT(stopped.output, HasSubstr("the same command resumes"));
-    const auto files = std::filesystem::directory_iterator(folder.path);
-    EXPECT_TRUE(
-        std::any_of(begin(files), end(files), [](const auto& file) { return file.path().extension() == ".partial"; }));
-    const ProgramRun again = run_shell("timeout --preserve-status -s INT 2 " + command + "16777216");
-    EXPECT_EQ(again.exit_code, 130) << again.output;
-    const auto samples = [](const std::string& output) { return std::stol(output.substr(output.find("after ") + 6)); };
-    EXPECT_GT(samples(again.output), samples(stopped.output)) << stopped.output << again.output;
-}
-
 TEST(CommandLine, ReferenceWritesPlanesThatCompareWithThemselves) {
     const TemporaryFolder folder;
     const std::string out = folder.path.string();

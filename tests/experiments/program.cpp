@@ -1,10 +1,13 @@
 #include "tests/experiments/program.h"
 
 #include <array>
+#include <csignal>
 #include <cstdio>
+#include <fstream>
 #include <stdexcept>
 
 #include <sys/wait.h>
+#include <unistd.h>
 
 namespace plumb {
 namespace {
@@ -13,6 +16,16 @@ std::string quoted(const std::string& argument) {
     std::string result = "'";
     for (const char letter : argument) letter == '\'' ? result.append("'\\''") : result.append(1, letter);
     return result.append("'");
+}
+
+// Whether a process has a handler for a signal, as Linux tells it in proc(5).
+bool catches(pid_t process, int signal) {
+    std::ifstream status("/proc/" + std::to_string(process) + "/status");
+    for (std::string line; std::getline(status, line);) {
+        if (line.rfind("SigCgt:", 0) != 0) continue;
+        return (std::stoull(line.substr(7), nullptr, 16) >> (signal - 1) & 1) != 0;
+    }
+    return false;
 }
 
 }  // namespace
@@ -29,10 +42,52 @@ ProgramRun run_shell(const std::string& command) {
     return run;
 }
 
-ProgramRun run_plumbline(const std::vector<std::string>& arguments) {
+ProgramRun run_plumbline(const std::vector<std::string>& arguments) { return run_shell(quoted_command(arguments)); }
+
+std::string quoted_command(const std::vector<std::string>& arguments) {
     std::string command = quoted(PLUMBLINE_PROGRAM);
     for (const std::string& argument : arguments) command.append(" ").append(quoted(argument));
-    return run_shell(command);
+    return command;
+}
+
+ProgramRun signal_plumbline(const std::vector<std::string>& arguments, int signal) {
+    int pipe[2];
+    if (::pipe(pipe) != 0) throw std::runtime_error("cannot make a pipe");
+    std::vector<std::string> texts = {PLUMBLINE_PROGRAM};
+    texts.insert(texts.end(), arguments.begin(), arguments.end());
+    std::vector<char*> pointers;
+    for (std::string& text : texts) pointers.push_back(text.data());
+    pointers.push_back(nullptr);
+
+    const pid_t child = ::fork();
+    if (child < 0) throw std::runtime_error("cannot start another process");
+    if (child == 0) {
+        ::dup2(pipe[1], STDOUT_FILENO);
+        ::dup2(pipe[1], STDERR_FILENO);
+        ::close(pipe[0]), ::close(pipe[1]);
+        ::execv(PLUMBLINE_PROGRAM, pointers.data());
+        ::_exit(127);
+    }
+    ::close(pipe[1]);
+    int status = 0;
+    bool ended = false;
+    while (!ended && !catches(child, signal)) {
+        ended = ::waitpid(child, &status, WNOHANG) == child;
+        ::usleep(2000);
+    }
+    if (!ended) ::kill(child, signal);
+    ProgramRun run;
+    std::array<char, 4096> buffer;
+    while (true) {
+        const ssize_t count = ::read(pipe[0], buffer.data(), buffer.size());
+        if (count <= 0) break;
+        run.output.append(buffer.data(), static_cast<std::size_t>(count));
+    }
+    ::close(pipe[0]);
+    if (ended) throw std::runtime_error("plumbline ended before it caught a signal: " + run.output);
+    ::waitpid(child, &status, 0);
+    run.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    return run;
 }
 
 }  // namespace plumb

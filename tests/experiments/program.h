@@ -16,4 +16,11 @@ ProgramRun run_shell(const std::string& command);
 // Runs plumbline with arguments, which may hold spaces.
 ProgramRun run_plumbline(const std::vector<std::string>& arguments);
 
+// Starts plumbline, waits until it catches `signal`, sends it, and waits for the end. Throws std::runtime_error where
+// the program ends before.
+ProgramRun signal_plumbline(const std::vector<std::string>& arguments, int signal);
+
+// Arguments as a shell takes them.
+std::string quoted_command(const std::vector<std::string>& arguments);
+
 }  // namespace plumb
