@@ -8,21 +8,6 @@
 
 namespace plumb {
 
-float evaluate_falloff(Falloff falloff, float distance, float radius) {
-    if (distance >= radius) return 0.0f;
-    const float ratio = distance / radius;  // 0 for an infinite radius
-    const float quadratic = 1.0f - ratio * ratio;
-    switch (falloff) {
-        case Falloff::hard:
-            return 1.0f;
-        case Falloff::quadratic:
-            return quadratic;
-        case Falloff::cubic:
-            return quadratic * quadratic * quadratic;
-    }
-    return 0.0f;
-}
-
 std::string_view to_string(Falloff falloff) {
     switch (falloff) {
         case Falloff::hard:

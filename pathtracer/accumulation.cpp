@@ -33,9 +33,14 @@ Accumulation::Accumulation(int width, int height, const EstimationPlan& plan, bo
 }
 
 void Accumulation::add(const SampleBatch& samples, int count, const BatchEstimate& estimate) {
+    if (ao_ >= 0) {
+        for (int i = 0; i < count; ++i) {
+            sums(samples.pixel[i], samples.half[i])[ao_] += rounded(estimate.ambient_visibility[i]);
+        }
+    }
+    if (channels_ == (ao_ >= 0 ? 1u : 0u)) return;
     for (int i = 0; i < count; ++i) {
         double* sum = sums(samples.pixel[i], samples.half[i]);
-        if (ao_ >= 0) sum[ao_] += rounded(estimate.ambient_visibility[i]);
         if (emission_ >= 0) add_colour(sum + emission_, samples.emission.get(i));
         if (reflection_ >= 0) add_colour(sum + reflection_, estimate.reflection.get(i));
         const glm::vec3 albedo = samples.albedo.get(i);

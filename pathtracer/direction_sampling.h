@@ -7,11 +7,13 @@
 #include <glm/glm.hpp>
 #include <glm/gtc/constants.hpp>
 
+#include "pathtracer/lanes.h"
+
 namespace plumb {
 
 // Two unit vectors that complete `n` to a right-handed basis.
 //   Source: Duff et al. 2017, "Building an Orthonormal Basis, Revisited".
-inline void complete_basis(const glm::vec3& n, glm::vec3& tangent, glm::vec3& bitangent) {
+PLUMBLINE_INLINE void complete_basis(const glm::vec3& n, glm::vec3& tangent, glm::vec3& bitangent) {
     const float sign = std::copysign(1.0f, n.z);
     const float a = -1.0f / (sign + n.z);
     const float b = n.x * n.y * a;
@@ -21,7 +23,7 @@ inline void complete_basis(const glm::vec3& n, glm::vec3& tangent, glm::vec3& bi
 
 // Sine and cosine of |angle| <= pi / 4 by their Taylor polynomials, to 4e-8; several times faster than the library's
 // for all angles, and free of calls in the innermost loop.
-inline void small_sine_cosine(float angle, float& sine, float& cosine) {
+PLUMBLINE_INLINE void small_sine_cosine(float angle, float& sine, float& cosine) {
     const float x = angle * angle;
     sine = angle * (1.0f + x * (-1.0f / 6.0f + x * (1.0f / 120.0f + x * (-1.0f / 5040.0f + x * (1.0f / 362880.0f)))));
     cosine = 1.0f + x * (-0.5f + x * (1.0f / 24.0f + x * (-1.0f / 720.0f + x * (1.0f / 40320.0f))));
@@ -29,7 +31,7 @@ inline void small_sine_cosine(float angle, float& sine, float& cosine) {
 
 // Uniform on the unit disc; keeps neighbours neighbours. Without branches, for loops over lanes.
 //   Source: Shirley, Chiu 1997.
-inline glm::vec2 sample_disc(glm::vec2 u) {
+PLUMBLINE_INLINE glm::vec2 sample_disc(glm::vec2 u) {
     const float across = 2.0f * u.x - 1.0f, along = 2.0f * u.y - 1.0f;
     const bool wide = std::abs(across) > std::abs(along);
     const float radius = wide ? across : along, other = wide ? along : across;
@@ -40,7 +42,7 @@ inline glm::vec2 sample_disc(glm::vec2 u) {
 }
 
 // A direction about unit `normal` with density cos(theta) / pi.
-inline glm::vec3 sample_cosine_hemisphere(const glm::vec3& normal, glm::vec2 u) {
+PLUMBLINE_INLINE glm::vec3 sample_cosine_hemisphere(const glm::vec3& normal, glm::vec2 u) {
     glm::vec3 tangent, bitangent;
     complete_basis(normal, tangent, bitangent);
     const glm::vec2 disc = sample_disc(u);
@@ -70,18 +72,15 @@ inline float cone_density(float height) { return glm::one_over_two_pi<float>() /
 
 // Barycentric weights of the second and third corner, uniform over a triangle.
 //   Source: Heitz 2019, "A Low-Distortion Map Between Triangle and Square".
-inline glm::vec2 sample_triangle(glm::vec2 u) {
-    if (u.y > u.x) {
-        const float x = 0.5f * u.x;
-        return {x, u.y - x};
-    }
-    const float y = 0.5f * u.y;
-    return {u.x - y, y};
+PLUMBLINE_INLINE glm::vec2 sample_triangle(glm::vec2 u) {
+    const bool above = u.y > u.x;
+    const float half = 0.5f * (above ? u.x : u.y);
+    return {above ? half : u.x - half, above ? u.y - half : half};
 }
 
 // Weight of a sample drawn with density `own` where the other strategy would have had density `other`; the power
 // heuristic with exponent 2 (Veach 1997, equation 9.13), written so that large densities do not overflow.
-inline float power_heuristic(float own, float other) {
+PLUMBLINE_INLINE float power_heuristic(float own, float other) {
     const float ratio = other / own;
     return 1.0f / (1.0f + ratio * ratio);
 }

@@ -48,6 +48,33 @@ double mean_emission(const Scene& scene, const Material& material) {
     return texture.texels.empty() ? 0.0 : 4.0 * sum / static_cast<double>(texture.texels.size());
 }
 
+// A point on a triangle that emits, as a receiver sees it. Without branches, for loops over lanes.
+struct TriangleSample {
+    glm::vec3 direction, shadow_ray;
+    float inverse_density;  // per solid angle; 0: no light from there
+    glm::vec2 at;           // barycentric weights of the second and third corner
+};
+
+PLUMBLINE_INLINE TriangleSample sample_emitting_triangle(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c,
+                                                         const glm::vec3& normal, float area_over_probability,
+                                                         float error, float back_emits, const glm::vec3& receiver,
+                                                         glm::vec2 u) {
+    TriangleSample sample;
+    sample.at = sample_triangle(u);
+    const glm::vec3 offset = (1.0f - sample.at.x - sample.at.y) * a + sample.at.x * b + sample.at.y * c - receiver;
+    const float squared = glm::dot(offset, offset);
+    const float inverse_distance = squared > 0.0f ? 1.0f / std::sqrt(squared) : 0.0f;
+    sample.direction = offset * inverse_distance;
+    const float cosine = -glm::dot(normal, sample.direction);
+    const float seen = cosine > 0.0f ? cosine : -cosine * back_emits;
+    // From density per area to density per solid angle: d^2 / cosine.
+    sample.inverse_density = seen * area_over_probability * inverse_distance * inverse_distance;
+    // The ray stops short of the emitter by the rounding errors of both ends.
+    const float step = error + coordinate_error * glm::dot(glm::abs(normal), glm::abs(receiver));
+    sample.shadow_ray = offset + (cosine > 0.0f ? step : -step) * normal;
+    return sample;
+}
+
 }  // namespace
 
 LightTable::LightTable(const TracedScene& traced, const EnvironmentDistribution& environment, EmitterSampling strategy)
@@ -73,6 +100,8 @@ LightTable::LightTable(const TracedScene& traced, const EnvironmentDistribution&
         for (Sun& sun : suns_) sun.probability = static_cast<float>(extended_.probability(index++));
         environment_probability_ = static_cast<float>(extended_.probability(index));
     }
+    only_plain_emitters_ = suns_.empty() && !environment_sampled &&
+                           std::ranges::none_of(emitters_, [](const Emitter& e) { return e.varies || e.moves; });
     lights_without_extent_ = scene.point_lights.size() + scene.spot_lights.size() + parallel_.size();
 
     const bool rays = strategy != EmitterSampling::lights;
@@ -181,30 +210,52 @@ LightSample LightTable::sample_without_extent(const LightReceiver& receiver, flo
 }
 
 LightSample LightTable::sample_emitter(const Emitter& emitter, const LightReceiver& receiver, glm::vec2 u) const {
-    const glm::vec2 at = sample_triangle(u);
-    const glm::vec3 offset = emitter.corners.point(at.x, at.y) - receiver.origin;
-    const float squared = glm::dot(offset, offset);
-    if (!(squared > 0.0f)) return {};
+    const TriangleSample chosen = sample_emitting_triangle(
+        emitter.corners.a, emitter.corners.b, emitter.corners.c, emitter.normal, emitter.area / emitter.probability,
+        emitter.error, emitter.two_sided ? 1.0f : 0.0f, receiver.origin, u);
+    if (!(chosen.inverse_density > 0.0f)) return {};
     LightSample sample;
-    sample.direction = offset * (1.0f / std::sqrt(squared));
-    const float cosine = -glm::dot(emitter.normal, sample.direction);
-    if (cosine == 0.0f || (cosine < 0.0f && !emitter.two_sided)) return {};
-    // From density per area to density per solid angle: d^2 / cosine.
-    const float inverse_density = std::abs(cosine) * emitter.area / (squared * emitter.probability);
-    if (!(inverse_density > 0.0f)) return {};
-    sample.density = 1.0f / inverse_density;
-    sample.radiance = inverse_density * emitter.emission;
+    sample.direction = chosen.direction, sample.shadow_ray = chosen.shadow_ray;
+    sample.farthest = 1.0f;
+    sample.density = 1.0f / chosen.inverse_density;
+    sample.radiance = chosen.inverse_density * emitter.emission;
     if (emitter.varies) {
-        const glm::vec2 uv = emitter.corners.uv(at.x, at.y);
+        const glm::vec2 uv = emitter.corners.uv(chosen.at.x, chosen.at.y);
         const Material& material = scene_.material(emitter.instance);
         if (material.alpha_mask && !scene_.scene().is_opaque(material, uv)) return {};
-        sample.radiance = inverse_density * scene_.surface_sample(emitter.instance, uv).emission;
+        sample.radiance = chosen.inverse_density * scene_.surface_sample(emitter.instance, uv).emission;
     }
-    // The ray stops short of the emitter by the rounding errors of both ends.
-    const float step = emitter.error + coordinate_error * glm::dot(glm::abs(emitter.normal), glm::abs(receiver.origin));
-    sample.shadow_ray = offset + (cosine > 0.0f ? step : -step) * emitter.normal;
-    sample.farthest = 1.0f;
     return sample;
+}
+
+void LightTable::sample_extended(const VertexBatch& receivers, const Lanes<float>& pick, const Lanes<float>& x,
+                                 const Lanes<float>& y, LightLanes& samples) const {
+    if (!only_plain_emitters_) {
+        for (int i = 0; i < receivers.count; ++i) {
+            samples.set(
+                i, sample_extended({receivers.ray_origin.get(i), receivers.shading_normal.get(i), receivers.time[i]},
+                                   pick[i], {x[i], y[i]}));
+        }
+        return;
+    }
+    VectorLanes a, b, c, normal, emission;
+    Lanes<float> area, error, back_emits;
+    for (int i = 0; i < receivers.count; ++i) {
+        const Emitter& emitter = emitters_[extended_.sample(pick[i])];
+        a.set(i, emitter.corners.a), b.set(i, emitter.corners.b), c.set(i, emitter.corners.c);
+        normal.set(i, emitter.normal), emission.set(i, emitter.emission);
+        area[i] = emitter.area / emitter.probability, error[i] = emitter.error;
+        back_emits[i] = emitter.two_sided ? 1.0f : 0.0f;
+    }
+    for (int i = 0; i < receivers.count; ++i) {
+        const TriangleSample chosen =
+            sample_emitting_triangle(a.get(i), b.get(i), c.get(i), normal.get(i), area[i], error[i], back_emits[i],
+                                     receivers.ray_origin.get(i), {x[i], y[i]});
+        samples.direction.set(i, chosen.direction), samples.shadow_ray.set(i, chosen.shadow_ray);
+        samples.radiance.set(i, chosen.inverse_density * emission.get(i));
+        samples.farthest[i] = 1.0f;
+        samples.density[i] = chosen.inverse_density > 0.0f ? 1.0f / chosen.inverse_density : 0.0f;
+    }
 }
 
 LightSample LightTable::sample_sun(const Sun& sun, glm::vec2 u) const {

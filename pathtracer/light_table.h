@@ -14,6 +14,7 @@
 
 #include "pathtracer/discrete_distribution.h"
 #include "pathtracer/environment_distribution.h"
+#include "pathtracer/path_batch.h"
 #include "pathtracer/reference.h"
 #include "pathtracer/traced_scene.h"
 
@@ -26,6 +27,18 @@ struct LightSample {
     float farthest = infinite_distance;
     glm::vec3 radiance{0.0f};  // already divided by the density; times cosine and BSDF it is the estimate. 0: no light
     float density = 0.0f;      // per solid angle, with the choice of the light; 0: nothing but this sampling finds it
+};
+
+// Samples of many paths side by side.
+struct LightLanes {
+    VectorLanes direction, shadow_ray, radiance;
+    Lanes<float> farthest, density;
+
+    void set(int lane, const LightSample& sample) {
+        direction.set(lane, sample.direction), shadow_ray.set(lane, sample.shadow_ray);
+        radiance.set(lane, sample.radiance);
+        farthest[lane] = sample.farthest, density[lane] = sample.density;
+    }
 };
 
 // Where light arrives.
@@ -44,9 +57,11 @@ public:
     // Where true, sampled directions have to be followed to emitters (and beyond all surfaces).
     bool rays_find_emitters() const { return rays_find_triangles_ || rays_find_background_; }
     bool rays_find_triangles() const { return rays_find_triangles_; }
+    bool has_background() const { return !suns_.empty() || !scene_.scene().environment.is_black(); }
 
-    // Of all lights with an extent.
-    LightSample sample_extended(const LightReceiver& receiver, float pick, glm::vec2 u) const;
+    // Of all lights with an extent, for each vertex.
+    void sample_extended(const VertexBatch& receivers, const Lanes<float>& pick, const Lanes<float>& x,
+                         const Lanes<float>& y, LightLanes& samples) const;
 
     // The weight against sample_extended of `emission` found at `hit`, on a surface with that geometric normal, by a
     // ray in unit `direction` that was drawn with `density`; 0 as density means that nothing else could have drawn it.
@@ -76,6 +91,7 @@ private:
         float height, density, probability = 0.0f;
     };
 
+    LightSample sample_extended(const LightReceiver& receiver, float pick, glm::vec2 u) const;
     void find_emitters(std::vector<double>& powers);
     void find_suns(std::vector<double>& powers);
     Emitter moved(const Emitter& emitter, float time) const;
@@ -92,7 +108,8 @@ private:
     std::vector<std::size_t> parallel_;  // directional lights without an angular size
     std::size_t lights_without_extent_ = 0;
     float environment_probability_ = 0.0f;
-    DiscreteDistribution extended_;  // emitters, suns, environment
+    DiscreteDistribution extended_;     // emitters, suns, environment
+    bool only_plain_emitters_ = false;  // nothing but triangles of one radiance each that stand still
     bool rays_find_triangles_ = false, rays_find_background_ = false;
 };
 

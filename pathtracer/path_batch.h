@@ -1,7 +1,9 @@
 // Paths that are followed side by side: where they stand, and what they have found.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <numeric>
 
 #include <glm/glm.hpp>
 
@@ -29,8 +31,15 @@ struct VertexBatch {
     VectorLanes albedo;      // of the diffuse lobe, already less what the specular one takes
     VectorLanes throughput;  // of the path up to here
     Lanes<std::uint8_t> is_plain;
+    bool all_plain = true;
     std::array<SpecularVertex, most_lanes> specular;  // for lanes that are not plain
 
+    void clear() {
+        count = 0;
+        all_plain = true;
+    }
+
+    // Takes over lane `from` of `other`.
     void add(const VertexBatch& other, int from) {
         path[count] = other.path[from];
         samples.set(count, other.samples.get(from));
@@ -41,8 +50,23 @@ struct VertexBatch {
         albedo.set(count, other.albedo.get(from));
         throughput.set(count, other.throughput.get(from));
         is_plain[count] = other.is_plain[from];
+        all_plain &= is_plain[count] != 0;
         if (!is_plain[count]) specular[count] = other.specular[from];
         ++count;
+    }
+
+    // Gives lanes begin + 1 to end - 1 the vertex of lane `begin`, as paths and with samples of their own.
+    void repeat(int begin, int end) {
+        std::iota(path.begin() + begin, path.begin() + end, path[begin]);
+        std::fill(time.begin() + begin, time.begin() + end, time[begin]);
+        ray_origin.fill(begin, end, ray_origin.get(begin));
+        geometric_normal.fill(begin, end, geometric_normal.get(begin));
+        shading_normal.fill(begin, end, shading_normal.get(begin));
+        albedo.fill(begin, end, albedo.get(begin));
+        throughput.fill(begin, end, throughput.get(begin));
+        std::fill(is_plain.begin() + begin, is_plain.begin() + end, is_plain[begin]);
+        if (!is_plain[begin]) std::fill(specular.begin() + begin, specular.begin() + end, specular[begin]);
+        count = end;
     }
 };
 
@@ -53,6 +77,41 @@ struct BatchEstimate {
     std::array<VectorLanes, most_bounces + 1> radiance;
     VectorLanes reflection;
     int rays = 0;
+};
+
+// The rays with which paths leave their vertices, one beside the other.
+struct ScatteredRays {
+    RayBatch rays;
+    Lanes<int> vertex;     // lane of the vertex that each leaves
+    VectorLanes weight;    // BSDF times cosine over density
+    Lanes<float> density;  // per solid angle; 0: nothing else finds this direction
+    Lanes<int> ended;      // lanes whose direction led into their own surface
+    int ended_count = 0;
+
+    void clear() { rays.count = ended_count = 0; }
+    void add(int lane, const glm::vec3& origin, const glm::vec3& direction, float time, const glm::vec3& with_weight,
+             float with_density) {
+        vertex[rays.count] = lane, density[rays.count] = with_density;
+        weight.set(rays.count, with_weight);
+        rays.add(origin, direction, infinite_distance, time);
+    }
+};
+
+// Shadow rays, and what each would bring.
+struct ShadowRays {
+    RayBatch rays;
+    Lanes<int> vertex;  // lane of the vertex that each leaves
+    VectorLanes light;
+};
+
+// Room for what is passed from step to step, so that none of it is made anew for every batch.
+struct PathWorkspace {
+    VertexBatch starts, vertices, next;
+    ScatteredRays scattered;
+    ShadowRays shadow;
+    HitBatch hits;
+    Lanes<int> met;  // which rays met something
+    SurfaceLanes points;
 };
 
 }  // namespace plumb

@@ -1,6 +1,7 @@
 #include "pathtracer/path_integrator.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include <glm/gtc/constants.hpp>
 
@@ -22,32 +23,15 @@ void add_to(VectorLanes& sum, int lane, const glm::vec3& value) {
     sum.x[lane] += value.x, sum.y[lane] += value.y, sum.z[lane] += value.z;
 }
 
+const VectorLanes unit_weight = [] {
+    VectorLanes ones;
+    ones.fill(0, most_lanes, glm::vec3(1.0f));
+    return ones;
+}();
+
 float largest(const glm::vec3& v) { return std::max(v.x, std::max(v.y, v.z)); }
 
-void clear(VectorLanes& lanes, int count) {
-    std::fill_n(lanes.x.begin(), count, 0.0f);
-    std::fill_n(lanes.y.begin(), count, 0.0f);
-    std::fill_n(lanes.z.begin(), count, 0.0f);
-}
-
 }  // namespace
-
-// The rays with which paths leave their vertices, one beside the other.
-struct PathIntegrator::ScatteredRays {
-    RayBatch rays;
-    Lanes<int> vertex;     // lane of the vertex that each leaves
-    VectorLanes weight;    // BSDF times cosine over density
-    Lanes<float> density;  // per solid angle; 0: nothing else finds this direction
-    Lanes<int> ended;      // lanes whose direction led into their own surface
-    int ended_count = 0;
-
-    void add(int lane, const glm::vec3& origin, const glm::vec3& direction, float reach, float time,
-             const glm::vec3& with_weight, float with_density) {
-        vertex[rays.count] = lane, density[rays.count] = with_density;
-        weight.set(rays.count, with_weight);
-        rays.add(origin, direction, reach, time);
-    }
-};
 
 glm::vec3 PathIntegrator::add_start(const SurfacePoint& x, const glm::vec3& direction, const SampleIndex& sample,
                                     float time, VertexBatch& batch) const {
@@ -60,93 +44,90 @@ glm::vec3 PathIntegrator::add_start(const SurfacePoint& x, const glm::vec3& dire
     batch.shading_normal.set(lane, x.shading_normal);
     batch.throughput.set(lane, glm::vec3(1.0f));
     batch.is_plain[lane] = !x.specular.has_lobe() && !x.specular.is_transparent();
+    batch.all_plain &= batch.is_plain[lane] != 0;
     glm::vec3 albedo = x.albedo;
     if (!batch.is_plain[lane]) {
         batch.specular[lane] = {x.specular, -direction, 2.0f * x.position - x.ray_origin};
-        albedo *= 1.0f - specular_albedo(x.specular, x.shading_normal, -direction);
+        albedo *= 1.0f - scene_.specular_albedo(x.specular, x.shading_normal, -direction);
     }
     batch.albedo.set(lane, albedo);
     return albedo;
 }
 
-glm::vec3 PathIntegrator::specular_albedo(const SpecularSurface& surface, const glm::vec3& shading_normal,
-                                          const glm::vec3& to_viewer) const {
-    if (!surface.has_lobe()) return glm::vec3(0.0f);
-    const float cosine = std::max(0.0f, glm::dot(lobe_normal(shading_normal, to_viewer), to_viewer));
-    return specular_albedo_->albedo(surface.f0, surface.f90, cosine, surface.alpha);
-}
-
 Scattering PathIntegrator::scattering(const VertexBatch& vertices, int lane, int vertex) const {
     const SpecularVertex& here = vertices.specular[lane];
     const glm::vec3 normal = vertices.shading_normal.get(lane);
-    const glm::vec3 specular = specular_albedo(here.surface, normal, here.to_viewer);
+    const glm::vec3 specular = scene_.specular_albedo(here.surface, normal, here.to_viewer);
     if (vertex > 0) return {here, normal, vertices.albedo.get(lane), specular, glm::vec3(0.0f)};
-    return {here, normal, glm::vec3(0.0f), specular, here.surface.transmission};
-}
-
-// Adds to `sum` the light that shadow rays find open; the i-th leaves vertex lanes[i] and would bring light.get(i).
-void PathIntegrator::connect(const VertexBatch& vertices, const Lanes<int>& lanes, const RayBatch& shadow_rays,
-                             const VectorLanes& light, VectorLanes& sum, int& rays) const {
-    rays += shadow_rays.count;
-    VectorLanes passing;
-    scene_.transmittance(shadow_rays, passing);
-    for (int i = 0; i < shadow_rays.count; ++i) {
-        add_to(sum, vertices.path[lanes[i]], light.get(i) * passing.get(i));
-    }
+    return {here, normal, glm::vec3(0.0f), specular, here.surface.transmission * (1.0f - specular)};
 }
 
 // Adds to `sum` what reaches each vertex from one sampled light with an extent and from one without.
-void PathIntegrator::next_event(const VertexBatch& vertices, int vertex, Start start, VectorLanes& sum,
-                                int& rays) const {
-    const bool rays_compete = lights_.rays_find_emitters();
+void PathIntegrator::next_event(const VertexBatch& vertices, int vertex, Start start, ShadowRays& shadow,
+                                VectorLanes& sum, int& rays) const {
     const bool specular_start = start == Start::specular;
-    const bool leaves_diffusely = vertex == 0 && !specular_start;
-    const auto gather = [&](const auto& sample_light) {
-        RayBatch shadow_rays;
-        VectorLanes light;
-        Lanes<int> lanes;
-        for (int i = 0; i < vertices.count; ++i) {
-            const LightReceiver receiver{vertices.ray_origin.get(i), vertices.shading_normal.get(i), vertices.time[i]};
-            const LightSample sample = sample_light(i, receiver);
-            const float cosine = glm::dot(receiver.normal, sample.direction);
-            // Light from behind the triangle is stopped by the triangle itself, whatever the interpolated normal says.
-            if (sample.radiance == glm::vec3(0.0f) ||
-                glm::dot(vertices.geometric_normal.get(i), sample.direction) <= 0.0f) {
-                continue;
-            }
-            glm::vec3 reflected;
-            float density = std::max(0.0f, cosine) * glm::one_over_pi<float>();
-            if (leaves_diffusely) {
-                reflected = glm::vec3(density);
-            } else if (vertices.is_plain[i]) {
-                reflected = density * vertices.albedo.get(i);
-            } else {
-                const SpecularLobeValue value = scattering(vertices, i, vertex).evaluate(sample.direction);
-                reflected = value.reflected, density = value.density;
-            }
-            if (rays_compete && sample.density > 0.0f) reflected *= power_heuristic(sample.density, density);
-            const glm::vec3 brought = vertices.throughput.get(i) * reflected * sample.radiance;
-            if (brought == glm::vec3(0.0f)) continue;
-            lanes[shadow_rays.count] = i;
-            light.set(shadow_rays.count, brought);
-            shadow_rays.add(receiver.origin, sample.shadow_ray, sample.farthest, receiver.time);
-        }
-        if (shadow_rays.count > 0) connect(vertices, lanes, shadow_rays, light, sum, rays);
-    };
-
+    Lanes<float> pick, unused, x, y;
+    LightLanes lights;
     if (lights_.has_extended_lights()) {
-        Lanes<float> pick, unused, x, y;
         sample_points(vertices.samples, vertices.count, dimension(vertex, specular_start, extended_pick), pick, unused);
         sample_points(vertices.samples, vertices.count, dimension(vertex, specular_start, extended_point), x, y);
-        gather([&](int i, const LightReceiver& receiver) {
-            return lights_.sample_extended(receiver, pick[i], {x[i], y[i]});
-        });
+        lights_.sample_extended(vertices, pick, x, y, lights);
+        connect(vertices, vertex, start, lights, shadow, sum, rays);
     }
-    const bool exact_already = leaves_diffusely && plan_.exact_lights_at_first_point;
+    const bool exact_already = vertex == 0 && !specular_start && plan_.exact_lights_at_first_point;
     if (lights_.lights_without_extent() > 0 && !exact_already) {
-        Lanes<float> pick, unused;
         sample_points(vertices.samples, vertices.count, dimension(vertex, specular_start, other_pick), pick, unused);
-        gather([&](int i, const LightReceiver& receiver) { return lights_.sample_without_extent(receiver, pick[i]); });
+        for (int i = 0; i < vertices.count; ++i) {
+            lights.set(i, lights_.sample_without_extent(
+                              {vertices.ray_origin.get(i), vertices.shading_normal.get(i), vertices.time[i]}, pick[i]));
+        }
+        connect(vertices, vertex, start, lights, shadow, sum, rays);
+    }
+}
+
+// Adds to `sum` what each vertex makes of its light sample, where the way to the light is open.
+void PathIntegrator::connect(const VertexBatch& vertices, int vertex, Start start, const LightLanes& lights,
+                             ShadowRays& shadow, VectorLanes& sum, int& rays) const {
+    const bool leaves_diffusely = vertex == 0 && start == Start::diffuse;
+    const float others_compete = lights_.rays_find_emitters() ? 1.0f : 0.0f;
+    VectorLanes brought;
+    Lanes<float> brings;
+    for (int i = 0; i < vertices.count; ++i) {
+        const glm::vec3 direction = lights.direction.get(i);
+        // Light from behind the triangle is stopped by the triangle itself, whatever the interpolated normal says.
+        const float cosine = std::max(0.0f, glm::dot(vertices.shading_normal.get(i), direction));
+        const float open = glm::dot(vertices.geometric_normal.get(i), direction) > 0.0f ? 1.0f : 0.0f;
+        const float density = cosine * glm::one_over_pi<float>();
+        // A light that nothing else finds has no density, and then the weight is 1.
+        const float other = lights.density[i] > 0.0f ? others_compete * density / lights.density[i] : 0.0f;
+        const float scale = open * density / (1.0f + other * other);
+        const glm::vec3 albedo = leaves_diffusely ? glm::vec3(1.0f) : vertices.albedo.get(i);
+        const glm::vec3 light = vertices.throughput.get(i) * albedo * lights.radiance.get(i) * scale;
+        brought.set(i, light);
+        brings[i] = light.x + light.y + light.z;
+    }
+    shadow.rays.count = 0;
+    for (int i = 0; i < vertices.count; ++i) {
+        if (!leaves_diffusely && !vertices.all_plain && !vertices.is_plain[i]) {
+            const glm::vec3 direction = lights.direction.get(i);
+            const SpecularLobeValue value = scattering(vertices, i, vertex).evaluate(direction);
+            const bool competes = others_compete > 0.0f && lights.density[i] > 0.0f;
+            const float weight = competes ? power_heuristic(lights.density[i], value.density) : 1.0f;
+            const bool open = glm::dot(vertices.geometric_normal.get(i), direction) > 0.0f;
+            brought.set(i,
+                        vertices.throughput.get(i) * value.reflected * lights.radiance.get(i) * (open ? weight : 0.0f));
+            brings[i] = brought.x[i] + brought.y[i] + brought.z[i];
+        }
+        if (!(brings[i] > 0.0f)) continue;
+        shadow.vertex[shadow.rays.count] = i;
+        shadow.light.set(shadow.rays.count, brought.get(i));
+        shadow.rays.add(vertices.ray_origin.get(i), lights.shadow_ray.get(i), lights.farthest[i], vertices.time[i]);
+    }
+    rays += shadow.rays.count;
+    VectorLanes passing;
+    scene_.transmittance(shadow.rays, passing);
+    for (int i = 0; i < shadow.rays.count; ++i) {
+        add_to(sum, vertices.path[shadow.vertex[i]], shadow.light.get(i) * passing.get(i));
     }
 }
 
@@ -175,37 +156,48 @@ glm::vec3 PathIntegrator::exact_direct(const SurfacePoint& x, std::uint64_t& ray
 
 // Draws the direction in which each path leaves its vertex.
 void PathIntegrator::scatter(const VertexBatch& vertices, int vertex, Start start, ScatteredRays& scattered) const {
-    const bool specular_start = start == Start::specular;
-    Lanes<float> x, y, density;
-    VectorLanes directions;
+    const bool specular_start = start == Start::specular, leaves_diffusely = vertex == 0 && !specular_start;
+    Lanes<float> x, y, leaves;
     sample_points(vertices.samples, vertices.count, dimension(vertex, specular_start, next_direction), x, y);
+    RayBatch& rays = scattered.rays;
+    float all_leave = 1.0f;
     for (int i = 0; i < vertices.count; ++i) {
         const glm::vec3 normal = vertices.shading_normal.get(i);
         const glm::vec3 direction = sample_cosine_hemisphere(normal, {x[i], y[i]});
-        directions.set(i, direction);
-        density[i] = glm::dot(normal, direction) * glm::one_over_pi<float>();
+        rays.direction.set(i, direction);
+        scattered.density[i] = glm::dot(normal, direction) * glm::one_over_pi<float>();
+        leaves[i] = glm::dot(vertices.geometric_normal.get(i), direction) > 0.0f ? 1.0f : 0.0f;
     }
-    const bool leaves_diffusely = vertex == 0 && !specular_start;
+    for (int i = 0; i < vertices.count; ++i) all_leave = std::min(all_leave, leaves[i]);
+    scattered.clear();
+    if (all_leave > 0.0f && (leaves_diffusely || vertices.all_plain)) {
+        rays.count = vertices.count;
+        std::iota(scattered.vertex.begin(), scattered.vertex.begin() + rays.count, 0);
+        scattered.weight = leaves_diffusely ? unit_weight : vertices.albedo;
+        rays.origin = vertices.ray_origin;
+        rays.time = vertices.time;
+        std::fill_n(rays.nearest.begin(), rays.count, positive_distance);
+        std::fill_n(rays.farthest.begin(), rays.count, infinite_distance);
+        return;
+    }
+    // Rays move to lanes before those that they were drawn in, never behind.
     for (int i = 0; i < vertices.count; ++i) {
-        const glm::vec3 origin = vertices.ray_origin.get(i), normal = vertices.geometric_normal.get(i);
-        ScatterSample sample;
         if (leaves_diffusely || vertices.is_plain[i]) {
-            sample = {directions.get(i), leaves_diffusely ? glm::vec3(1.0f) : vertices.albedo.get(i), density[i],
-                      false};
-        } else {
-            const SampleIndex index = vertices.samples.get(i);
-            const float pick = sobol_point(index, mix_word(dimension(vertex, specular_start, lobe_pick))).x;
-            sample = scattering(vertices, i, vertex).sample(pick, {x[i], y[i]});
+            if (leaves[i] > 0.0f) {
+                scattered.add(i, vertices.ray_origin.get(i), rays.direction.get(i), vertices.time[i],
+                              leaves_diffusely ? glm::vec3(1.0f) : vertices.albedo.get(i), scattered.density[i]);
+            } else {
+                scattered.ended[scattered.ended_count++] = i;
+            }
+            continue;
         }
-        if (sample.passes) {
-            scattered.add(i, vertices.specular[i].far_side, sample.direction, infinite_distance, vertices.time[i],
-                          sample.weight, sample.density);
-        } else if (glm::dot(normal, sample.direction) > 0.0f && sample.weight != glm::vec3(0.0f)) {
-            scattered.add(i, origin, sample.direction, infinite_distance, vertices.time[i], sample.weight,
-                          sample.density);
-        } else {
-            scattered.ended[scattered.ended_count++] = i;
-        }
+        const SampleIndex index = vertices.samples.get(i);
+        const float pick = sobol_point(index, mix_word(dimension(vertex, specular_start, lobe_pick))).x;
+        const ScatterSample sample = scattering(vertices, i, vertex).sample(pick, {x[i], y[i]});
+        const bool outwards = glm::dot(vertices.geometric_normal.get(i), sample.direction) > 0.0f;
+        if ((!outwards && !sample.passes) || sample.weight == glm::vec3(0.0f)) continue;
+        scattered.add(i, sample.passes ? vertices.specular[i].far_side : vertices.ray_origin.get(i), sample.direction,
+                      vertices.time[i], sample.weight, sample.density);
     }
 }
 
@@ -218,18 +210,18 @@ void PathIntegrator::pass_panes(const VertexBatch& vertices, int vertex, Start s
         const SampleIndex index = vertices.samples.get(scattered.vertex[i]);
         for (std::uint32_t pane = 0; !hits[i].missed() && !scene_.is_plain(hits[i].instance); ++pane) {
             const SurfacePoint point = scene_.surface_point(hits[i], direction, scattered.rays.time[i]);
-            const float passing = largest(point.specular.transmission);
-            if (!(passing > 0.0f)) break;
-            const float staying =
-                largest(point.albedo + specular_albedo(point.specular, point.shading_normal, -direction));
-            const float share = passing / (passing + staying);
+            if (!point.specular.is_transparent()) break;
+            const glm::vec3 specular = scene_.specular_albedo(point.specular, point.shading_normal, -direction);
+            const glm::vec3 passing = point.specular.transmission * (1.0f - specular);
+            const float share =
+                largest(passing) / (largest(passing) + largest(point.albedo * (1.0f - specular) + specular));
             const std::uint32_t use = dimension(vertex, start == Start::specular, pane_pick) + pane * panes_apart;
             const glm::vec3 weight = scattered.weight.get(i);
             if (sobol_point(index, mix_word(use)).x >= share) {
                 scattered.weight.set(i, weight / (1.0f - share));
                 break;
             }
-            scattered.weight.set(i, weight * point.specular.transmission / share);
+            scattered.weight.set(i, weight * passing / share);
             hits[i] = scene_.intersect(origin, direction, std::nextafter(hits[i].distance, infinite_distance),
                                        scattered.rays.farthest[i], RayCoherence::incoherent, scattered.rays.time[i]);
             ++rays;
@@ -248,12 +240,65 @@ bool PathIntegrator::survives_roulette(const SampleIndex& sample, int vertex, St
     return true;
 }
 
-void PathIntegrator::follow(VertexBatch* vertices, VertexBatch* next, Start start, BatchEstimate& estimate) const {
+void PathIntegrator::arrive(const VertexBatch& from, int vertex, Start start, bool looks_for_emitters,
+                            PathWorkspace& workspace, VectorLanes& sum, VertexBatch& next) const {
+    const ScatteredRays& scattered = workspace.scattered;
+    const RayBatch& rays = scattered.rays;
+    const HitBatch& hits = workspace.hits;
+    const bool goes_on = vertex < plan_.bounces && (start == Start::specular || plan_.indirect);
+    const bool limited = start == Start::diffuse && vertex == 0 && plan_.indirect_radius < infinite_distance;
+    Lanes<int>& met = workspace.met;
+    int met_count = 0;
+    for (int i = 0; i < rays.count; ++i) {
+        if (!hits[i].missed()) met[met_count++] = i;
+    }
+    SurfaceLanes& points = workspace.points;
+    scene_.surface_points(rays, hits, met, met_count, points);
+    for (int j = 0; j < met_count; ++j) {
+        const int i = met[j], lane = scattered.vertex[i];
+        glm::vec3 throughput = from.throughput.get(lane) * scattered.weight.get(i);
+        const glm::vec3 emission = points.emission.get(j), direction = rays.direction.get(i);
+        if (looks_for_emitters && emission != glm::vec3(0.0f)) {
+            const float weight = lights_.emission_weight(hits[i], points.geometric_normal.get(j), direction,
+                                                         scattered.density[i], rays.time[i]);
+            add_to(sum, from.path[lane], throughput * emission * weight);
+        }
+        if (!goes_on || (limited && hits[i].distance >= plan_.indirect_radius)) continue;
+        const bool plain = scene_.is_plain(hits[i].instance);
+        glm::vec3 albedo = points.albedo.get(j);
+        if (plain && albedo == glm::vec3(0.0f)) continue;
+        if (!survives_roulette(from.samples.get(lane), vertex + 1, start, throughput)) continue;
+        const int to = next.count++;
+        next.path[to] = from.path[lane];
+        next.samples.set(to, from.samples.get(lane));
+        next.time[to] = rays.time[i];
+        next.ray_origin.set(to, points.ray_origin.get(j));
+        next.geometric_normal.set(to, points.geometric_normal.get(j));
+        next.shading_normal.set(to, points.shading_normal.get(j));
+        next.throughput.set(to, throughput);
+        next.is_plain[to] = plain;
+        next.all_plain &= plain;
+        if (!plain) {
+            next.specular[to] = {scene_.surface_point(hits[i], direction, rays.time[i]).specular, -direction,
+                                 glm::vec3(0.0f)};
+            albedo *=
+                1.0f - scene_.specular_albedo(next.specular[to].surface, points.shading_normal.get(j), -direction);
+        }
+        next.albedo.set(to, albedo);
+    }
+}
+
+void PathIntegrator::follow(const VertexBatch& starts, Start start, PathWorkspace& workspace,
+                            BatchEstimate& estimate) const {
     const bool diffuse_start = start == Start::diffuse;
-    for (int k = 0; vertices->count > 0; ++k, std::swap(vertices, next)) {
+    ScatteredRays& scattered = workspace.scattered;
+    RayBatch& rays = scattered.rays;
+    const VertexBatch* vertices = &starts;
+    VertexBatch *next = &workspace.next, *other = &workspace.vertices;
+    for (int k = 0; vertices->count > 0; ++k) {
         const bool gathers = !diffuse_start || (k == 0 ? plan_.direct : plan_.indirect);
         VectorLanes& sum = diffuse_start ? estimate.radiance[k] : estimate.reflection;
-        if (gathers) next_event(*vertices, k, start, sum, estimate.rays);
+        if (gathers) next_event(*vertices, k, start, workspace.shadow, sum, estimate.rays);
 
         // A mirror's rays, and those that pass a pane, find emitters whatever the strategy.
         const bool looks_for_emitters = gathers && (lights_.rays_find_emitters() || scene_.has_delta_lobes());
@@ -261,18 +306,17 @@ void PathIntegrator::follow(VertexBatch* vertices, VertexBatch* next, Start star
         const bool tests_visibility = diffuse_start && k == 0 && plan_.ao;
         if (!looks_for_emitters && !goes_on && !tests_visibility) return;
 
-        ScatteredRays scattered;
         scatter(*vertices, k, start, scattered);
-        const RayBatch& rays = scattered.rays;
+        const float nearest_visibility = 1.0f - obscurance(0.0f);
         if (tests_visibility) {
             for (int i = 0; i < scattered.ended_count; ++i) {
-                estimate.ambient_visibility[vertices->path[scattered.ended[i]]] = 1.0f - obscurance(0.0f);
+                estimate.ambient_visibility[vertices->path[scattered.ended[i]]] = nearest_visibility;
             }
         }
         if (!looks_for_emitters && diffuse_start && k == 0) {
             const float reach =
                 std::max(goes_on ? plan_.indirect_radius : 0.0f, tests_visibility ? plan_.ao_radius : 0.0f);
-            std::fill_n(scattered.rays.farthest.begin(), rays.count, reach);
+            std::fill_n(rays.farthest.begin(), rays.count, reach);
         }
         estimate.rays += rays.count;
         const auto path_of = [&](int i) { return vertices->path[scattered.vertex[i]]; };
@@ -283,20 +327,19 @@ void PathIntegrator::follow(VertexBatch* vertices, VertexBatch* next, Start star
         };
 
         // Where only the fact of a hit matters, the cheaper query does.
-        const bool any_hit_serves = !goes_on && diffuse_start && !scene_.has_transparency() &&
+        const bool any_hit_serves = !goes_on && diffuse_start && !scene_.has_delta_lobes() &&
                                     !(looks_for_emitters && lights_.rays_find_triangles()) &&
-                                    !(looks_for_emitters && scene_.has_delta_lobes()) &&
                                     !(tests_visibility && (looks_for_emitters || plan_.ao_falloff != Falloff::hard));
         if (any_hit_serves) {
             Lanes<std::uint8_t> blocked;
             scene_.occluded(rays, blocked, layers_);
             for (int i = 0; i < rays.count; ++i) {
-                if (blocked[i] && tests_visibility) estimate.ambient_visibility[path_of(i)] = 1.0f - obscurance(0.0f);
+                if (blocked[i] && tests_visibility) estimate.ambient_visibility[path_of(i)] = nearest_visibility;
                 if (!blocked[i] && looks_for_emitters) gather_background(i);
             }
             return;
         }
-        HitBatch hits;
+        HitBatch& hits = workspace.hits;
         scene_.intersect(rays, hits, RayCoherence::incoherent, layers_);
         if (tests_visibility) {
             for (int i = 0; i < rays.count; ++i) {
@@ -306,74 +349,42 @@ void PathIntegrator::follow(VertexBatch* vertices, VertexBatch* next, Start star
         }
         if (!looks_for_emitters && !goes_on) return;
         if (scene_.has_transparency()) pass_panes(*vertices, k, start, scattered, hits, estimate.rays);
-
-        Lanes<int> met;
-        int met_count = 0;
-        for (int i = 0; i < rays.count; ++i) {
-            if (!hits[i].missed()) {
-                met[met_count++] = i;
-            } else if (looks_for_emitters) {
-                gather_background(i);
+        if (looks_for_emitters && lights_.has_background()) {
+            for (int i = 0; i < rays.count; ++i) {
+                if (hits[i].missed()) gather_background(i);
             }
         }
-        SurfaceLanes points;
-        scene_.surface_points(rays, hits, met, met_count, points);
-        next->count = 0;
-        for (int j = 0; j < met_count; ++j) {
-            const int i = met[j], lane = scattered.vertex[i];
-            glm::vec3 throughput = vertices->throughput.get(lane) * scattered.weight.get(i);
-            const glm::vec3 emission = points.emission.get(j), direction = rays.direction.get(i);
-            if (looks_for_emitters && emission != glm::vec3(0.0f)) {
-                const float weight = lights_.emission_weight(hits[i], points.geometric_normal.get(j), direction,
-                                                             scattered.density[i], rays.time[i]);
-                add_to(sum, path_of(i), throughput * emission * weight);
-            }
-            if (!goes_on || (diffuse_start && k == 0 && hits[i].distance >= plan_.indirect_radius)) continue;
-            const bool plain = scene_.is_plain(hits[i].instance);
-            glm::vec3 albedo = points.albedo.get(j);
-            if (plain && albedo == glm::vec3(0.0f)) continue;
-            if (!survives_roulette(vertices->samples.get(lane), k + 1, start, throughput)) continue;
-            const int to = next->count++;
-            next->path[to] = vertices->path[lane];
-            next->samples.set(to, vertices->samples.get(lane));
-            next->time[to] = rays.time[i];
-            next->ray_origin.set(to, points.ray_origin.get(j));
-            next->geometric_normal.set(to, points.geometric_normal.get(j));
-            next->shading_normal.set(to, points.shading_normal.get(j));
-            next->throughput.set(to, throughput);
-            next->is_plain[to] = plain;
-            if (!plain) {
-                next->specular[to] = {scene_.specular_surface(hits[i], direction, rays.time[i]), -direction,
-                                      glm::vec3(0.0f)};
-                albedo *= 1.0f - specular_albedo(next->specular[to].surface, points.shading_normal.get(j), -direction);
-            }
-            next->albedo.set(to, albedo);
-        }
+        next->clear();
+        arrive(*vertices, k, start, looks_for_emitters, workspace, sum, *next);
+        vertices = next;
+        std::swap(next, other);
     }
 }
 
-void PathIntegrator::estimate(const VertexBatch& starts, BatchEstimate& estimate) const {
+void PathIntegrator::estimate(const VertexBatch& starts, PathWorkspace& workspace, BatchEstimate& estimate) const {
     std::fill_n(estimate.ambient_visibility.begin(), starts.count, 1.0f);
-    for (int k = 0; k <= plan_.bounces; ++k) clear(estimate.radiance[k], starts.count);
-    clear(estimate.reflection, starts.count);
+    for (int k = 0; k <= plan_.bounces; ++k) estimate.radiance[k].fill(0, starts.count, glm::vec3(0.0f));
+    estimate.reflection.fill(0, starts.count, glm::vec3(0.0f));
     estimate.rays = 0;
 
-    VertexBatch vertices, spare;
-    vertices.count = 0;
-    if (plan_.ao || plan_.direct || plan_.indirect) {
+    if (plan_.ao || plan_.irradiance) {
+        follow(starts, Start::diffuse, workspace, estimate);
+    } else if (plan_.direct || plan_.indirect) {
         // Nothing that x receives matters where x is black, unless the irradiance or what is near is wanted.
-        const bool also_black = plan_.ao || plan_.irradiance;
+        VertexBatch& lit = workspace.starts;
+        lit.clear();
         for (int i = 0; i < starts.count; ++i) {
-            if (also_black || starts.albedo.get(i) != glm::vec3(0.0f)) vertices.add(starts, i);
+            if (starts.albedo.get(i) != glm::vec3(0.0f)) lit.add(starts, i);
         }
-        follow(&vertices, &spare, Start::diffuse, estimate);
+        follow(lit.count == starts.count ? starts : lit, Start::diffuse, workspace, estimate);
     }
     if (!plan_.reflection) return;
-    vertices.count = 0;
+    VertexBatch& specular = workspace.starts;
+    specular.clear();
     for (int i = 0; i < starts.count; ++i) {
-        if (!starts.is_plain[i]) vertices.add(starts, i);
+        if (!starts.is_plain[i]) specular.add(starts, i);
     }
-    follow(&vertices, &spare, Start::specular, estimate);
+    follow(specular, Start::specular, workspace, estimate);
 }
 
 }  // namespace plumb

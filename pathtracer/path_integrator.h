@@ -18,7 +18,6 @@
 #include "pathtracer/path_batch.h"
 #include "pathtracer/scattering.h"
 #include "pathtracer/traced_scene.h"
-#include "scenes/specular_albedo.h"
 
 namespace plumb {
 
@@ -38,11 +37,11 @@ struct EstimationPlan {
 
 class PathIntegrator {
 public:
-    // `specular_albedo` may be null where no surface has a specular lobe. `layers`: what rays that look for surfaces
+    // `layers`: what rays that look for surfaces
     // may meet (all: null); the way from a surface to a light is always that of the whole scene.
-    PathIntegrator(const TracedScene& scene, const LightTable& lights, const SpecularAlbedo* specular_albedo,
-                   const OracleLayers* layers, const EstimationPlan& plan)
-        : scene_(scene), lights_(lights), specular_albedo_(specular_albedo), layers_(layers), plan_(plan) {}
+    PathIntegrator(const TracedScene& scene, const LightTable& lights, const OracleLayers* layers,
+                   const EstimationPlan& plan)
+        : scene_(scene), lights_(lights), layers_(layers), plan_(plan) {}
 
     // Makes `x`, seen against `direction`, the start of path number `path`, which must be the batch's next one. Returns
     // the albedo of x's diffuse lobe, by which `radiance` is to be multiplied.
@@ -50,7 +49,7 @@ public:
                         VertexBatch& batch) const;
 
     // Sets all of `estimate` that the plan wants, radiance for vertices 0..bounces.
-    void estimate(const VertexBatch& starts, BatchEstimate& estimate) const;
+    void estimate(const VertexBatch& starts, PathWorkspace& workspace, BatchEstimate& estimate) const;
 
     // The part of `direct` that lights without extent give, as if x's albedo were 1; deterministic. Counts rays.
     glm::vec3 exact_direct(const SurfacePoint& x, std::uint64_t& rays) const;
@@ -60,25 +59,25 @@ public:
 
 private:
     enum class Start { diffuse, specular };
-    struct ScatteredRays;
 
     // At the first vertex the specular side alone, later all lobes but what passes, which is decided before.
     Scattering scattering(const VertexBatch& vertices, int lane, int vertex) const;
-    void next_event(const VertexBatch& vertices, int vertex, Start start, VectorLanes& sum, int& rays) const;
-    void connect(const VertexBatch& vertices, const Lanes<int>& lanes, const RayBatch& shadow_rays,
-                 const VectorLanes& light, VectorLanes& sum, int& rays) const;
+    void next_event(const VertexBatch& vertices, int vertex, Start start, ShadowRays& shadow, VectorLanes& sum,
+                    int& rays) const;
+    void connect(const VertexBatch& vertices, int vertex, Start start, const LightLanes& lights, ShadowRays& shadow,
+                 VectorLanes& sum, int& rays) const;
     void scatter(const VertexBatch& vertices, int vertex, Start start, ScatteredRays& scattered) const;
     void pass_panes(const VertexBatch& vertices, int vertex, Start start, ScatteredRays& scattered, HitBatch& hits,
                     int& rays) const;
     bool survives_roulette(const SampleIndex& sample, int vertex, Start start, glm::vec3& throughput) const;
-    void follow(VertexBatch* vertices, VertexBatch* next, Start start, BatchEstimate& estimate) const;
-    glm::vec3 specular_albedo(const SpecularSurface& surface, const glm::vec3& shading_normal,
-                              const glm::vec3& to_viewer) const;
+    void follow(const VertexBatch& starts, Start start, PathWorkspace& workspace, BatchEstimate& estimate) const;
+    // Adds what each path finds where its ray arrived, and to `next` the vertices of those that go on.
+    void arrive(const VertexBatch& from, int vertex, Start start, bool looks_for_emitters, PathWorkspace& workspace,
+                VectorLanes& sum, VertexBatch& next) const;
     float obscurance(float distance) const { return evaluate_falloff(plan_.ao_falloff, distance, plan_.ao_radius); }
 
     const TracedScene& scene_;
     const LightTable& lights_;
-    const SpecularAlbedo* specular_albedo_;
     const OracleLayers* layers_;
     EstimationPlan plan_;
 };

@@ -11,7 +11,6 @@
 #include "pathtracer/reference_error.h"
 #include "pathtracer/reference_run.h"
 #include "pathtracer/traced_scene.h"
-#include "scenes/specular_albedo.h"
 
 namespace plumb {
 namespace {
@@ -25,23 +24,20 @@ int arena_size(int threads) {
 }  // namespace
 
 struct PathTracer::Implementation {
-    Implementation(const Scene& scene, const TimeSpan& span) : traced(scene, span), environment(scene) {
-        if (traced.has_specular_lobes()) specular_albedo.emplace();
-    }
+    Implementation(const Scene& scene, const TimeSpan& span) : traced(scene, span), environment(scene) {}
 
     // Runs `use` on a run of these settings, on that many threads.
     template <typename Use>
     auto with_run(const View& view, const ReferenceSettings& settings, int threads, const Use& use) const {
         tbb::task_arena arena(arena_size(threads));
         return arena.execute([&] {
-            ReferenceRun run(traced, environment, specular_albedo ? &*specular_albedo : nullptr, view, settings);
+            ReferenceRun run(traced, environment, view, settings);
             return use(run);
         });
     }
 
     TracedScene traced;
     EnvironmentDistribution environment;
-    std::optional<SpecularAlbedo> specular_albedo;
 };
 
 PathTracer::PathTracer(const Scene& scene, const TimeSpan& span)

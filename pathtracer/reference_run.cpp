@@ -54,6 +54,7 @@ EmitterSampling strategy_of(const ReferenceSettings& settings) {
 struct ReferenceRun::Scratch {
     VertexBatch starts;
     SampleBatch samples;
+    PathWorkspace workspace;
     BatchEstimate estimate;
     std::uint64_t rays = 0;
     // Primary rays that wait to be traced, and whose they are.
@@ -63,8 +64,8 @@ struct ReferenceRun::Scratch {
     Lanes<std::uint8_t> primary_half;
 };
 
-ReferenceRun::ReferenceRun(const TracedScene& scene, const EnvironmentDistribution& environment,
-                           const SpecularAlbedo* specular_albedo, const View& view, const ReferenceSettings& settings)
+ReferenceRun::ReferenceRun(const TracedScene& scene, const EnvironmentDistribution& environment, const View& view,
+                           const ReferenceSettings& settings)
     : scene_(scene),
       view_(view),
       settings_(settings),
@@ -74,7 +75,7 @@ ReferenceRun::ReferenceRun(const TracedScene& scene, const EnvironmentDistributi
                   ? std::optional<OracleLayers>(std::in_place, scene, settings.oracle->view, settings.oracle->layers,
                                                 settings.oracle->minimum_separation)
                   : std::nullopt),
-      integrator_(scene, lights_, specular_albedo, layers_ ? &*layers_ : nullptr, plan_.estimation),
+      integrator_(scene, lights_, layers_ ? &*layers_ : nullptr, plan_.estimation),
       accumulation_(view.width(), view.height(), plan_.estimation, plan_.primary_rays_are_sampled,
                     light_level(scene.scene())),
       hits_(first_layer(scene, view)),
@@ -104,7 +105,7 @@ void ReferenceRun::find_exact_parts() {
             const SurfacePoint point = scene_.surface_point(hits_[pixel], ray.direction);
             exact_.emission[pixel] = point.emission;
             if (!plan_.estimation.direct) continue;
-            start.count = 0;
+            start.clear();
             const glm::vec3 albedo = integrator_.add_start(point, ray.direction, {}, now, start);
             exact_.direct[pixel] = albedo * integrator_.exact_direct(point, row_rays);
         }
@@ -123,10 +124,10 @@ bool ReferenceRun::has_noise() const {
 
 void ReferenceRun::flush(Scratch& scratch) {
     if (scratch.starts.count == 0) return;
-    integrator_.estimate(scratch.starts, scratch.estimate);
+    integrator_.estimate(scratch.starts, scratch.workspace, scratch.estimate);
     accumulation_.add(scratch.samples, scratch.starts.count, scratch.estimate);
     scratch.rays += static_cast<std::uint64_t>(scratch.estimate.rays);
-    scratch.starts.count = 0;
+    scratch.starts.clear();
 }
 
 void ReferenceRun::add_centre_samples(int x, int y, int first_sample, int count, Scratch& scratch) {
@@ -138,15 +139,21 @@ void ReferenceRun::add_centre_samples(int x, int y, int first_sample, int count,
     }
     const Ray ray = view_.pixel_ray(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
     const SurfacePoint point = scene_.surface_point(hit, ray.direction);
-    SampleSequence sequence(settings_.seed, x, y, settings_.points);
-    for (int sample = first_sample; sample < first_sample + count; ++sample) {
-        sequence.start_sample(sample);
-        const int lane = scratch.starts.count;
-        scratch.samples.pixel[lane] = static_cast<std::uint32_t>(pixel);
-        scratch.samples.half[lane] = static_cast<std::uint8_t>(sample & 1);
-        scratch.samples.albedo.set(lane,
-                                   integrator_.add_start(point, ray.direction, sequence.index(), now, scratch.starts));
-        if (scratch.starts.count == most_lanes) flush(scratch);
+    const SampleSequence sequence(settings_.seed, x, y, settings_.points);
+    VertexBatch& starts = scratch.starts;
+    for (int sample = first_sample; sample < first_sample + count;) {
+        // As many samples of the pixel as the batch still has room for: one vertex for all.
+        const int begin = starts.count, end = std::min(most_lanes, begin + first_sample + count - sample);
+        const glm::vec3 albedo = integrator_.add_start(point, ray.direction, {}, now, starts);
+        starts.repeat(begin, end);
+        std::fill(scratch.samples.pixel.begin() + begin, scratch.samples.pixel.begin() + end,
+                  static_cast<std::uint32_t>(pixel));
+        scratch.samples.albedo.fill(begin, end, albedo);
+        sequence.start_samples(sample, end - begin, begin, starts.samples);
+        for (int lane = begin; lane < end; ++lane, ++sample) {
+            scratch.samples.half[lane] = static_cast<std::uint8_t>(sample & 1);
+        }
+        if (end == most_lanes) flush(scratch);
     }
 }
 

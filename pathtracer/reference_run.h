@@ -20,9 +20,9 @@ namespace plumb {
 
 class ReferenceRun {
 public:
-    // Keeps references to everything but the plan; `specular_albedo` may be null where the scene has no specular lobe.
-    ReferenceRun(const TracedScene& scene, const EnvironmentDistribution& environment,
-                 const SpecularAlbedo* specular_albedo, const View& view, const ReferenceSettings& settings);
+    // Keeps references to all.
+    ReferenceRun(const TracedScene& scene, const EnvironmentDistribution& environment, const View& view,
+                 const ReferenceSettings& settings);
 
     ~ReferenceRun();
 

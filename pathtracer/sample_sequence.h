@@ -25,13 +25,13 @@ inline std::uint64_t mix_bits(std::uint64_t x) {
     return x ^ (x >> 31);
 }
 
-inline std::uint32_t mix_word(std::uint32_t x) {
+PLUMBLINE_INLINE std::uint32_t mix_word(std::uint32_t x) {
     x = (x ^ (x >> 16)) * 0x7feb352du;
     x = (x ^ (x >> 15)) * 0x846ca68bu;
     return x ^ (x >> 16);
 }
 
-inline std::uint32_t reverse_bits(std::uint32_t x) {
+PLUMBLINE_INLINE std::uint32_t reverse_bits(std::uint32_t x) {
     x = __builtin_bswap32(x);
     x = ((x & 0x0f0f0f0fu) << 4) | ((x >> 4) & 0x0f0f0f0fu);
     x = ((x & 0x33333333u) << 2) | ((x >> 2) & 0x33333333u);
@@ -39,7 +39,7 @@ inline std::uint32_t reverse_bits(std::uint32_t x) {
 }
 
 // Flips each bit by a hash of the bits below it.
-inline std::uint32_t laine_karras_permutation(std::uint32_t x, std::uint32_t seed) {
+PLUMBLINE_INLINE std::uint32_t laine_karras_permutation(std::uint32_t x, std::uint32_t seed) {
     x ^= x * 0x3d20adeau;
     x += seed;
     x *= (seed >> 16) | 1u;
@@ -50,7 +50,7 @@ inline std::uint32_t laine_karras_permutation(std::uint32_t x, std::uint32_t see
 
 // The second Sobol dimension of an index whose bits are already reversed (the first dimension): the product with
 // Pascal's triangle modulo 2, which is a Kronecker power of [[1, 1], [0, 1]] and so five masked shifts.
-inline std::uint32_t second_sobol_dimension(std::uint32_t reversed_index) {
+PLUMBLINE_INLINE std::uint32_t second_sobol_dimension(std::uint32_t reversed_index) {
     std::uint32_t x = reversed_index;
     x ^= x << 16;
     x ^= (x & 0x00ff00ffu) << 8;
@@ -61,7 +61,7 @@ inline std::uint32_t second_sobol_dimension(std::uint32_t reversed_index) {
 }
 
 // [0, 1), never 1: the lowest 8 bits are dropped.
-inline float to_unit_interval(std::uint32_t x) { return static_cast<float>(x >> 8) * 0x1p-24f; }
+PLUMBLINE_INLINE float to_unit_interval(std::uint32_t x) { return static_cast<float>(x >> 8) * 0x1p-24f; }
 
 // Names one sample of one pixel: the key tells (seed, pixel, half) from all others.
 struct SampleIndex {
@@ -71,7 +71,7 @@ struct SampleIndex {
 
 // The point of `sample` in a dimension given as mix_word(dimension). All in 32 bits and without branches, so that a
 // loop over lanes becomes vector code.
-inline glm::vec2 sobol_point(const SampleIndex& sample, std::uint32_t mixed_dimension) {
+PLUMBLINE_INLINE glm::vec2 sobol_point(const SampleIndex& sample, std::uint32_t mixed_dimension) {
     const auto scrambled = [](std::uint32_t x, std::uint32_t seed) {
         return to_unit_interval(reverse_bits(laine_karras_permutation(reverse_bits(x), seed)));
     };
@@ -81,6 +81,17 @@ inline glm::vec2 sobol_point(const SampleIndex& sample, std::uint32_t mixed_dime
     const std::uint32_t index = laine_karras_permutation(sample.reversed_index, a);
     return {scrambled(index, b), scrambled(second_sobol_dimension(index), c)};
 }
+
+// The samples of many paths side by side.
+struct SampleLanes {
+    Lanes<std::uint32_t> key_low, key_high, reversed_index;
+
+    PLUMBLINE_INLINE SampleIndex get(int lane) const { return {key_low[lane], key_high[lane], reversed_index[lane]}; }
+    void set(int lane, const SampleIndex& sample) {
+        key_low[lane] = sample.key_low, key_high[lane] = sample.key_high;
+        reversed_index[lane] = sample.reversed_index;
+    }
+};
 
 class SampleSequence {
 public:
@@ -98,6 +109,25 @@ public:
                   sobol ? reverse_bits(static_cast<std::uint32_t>(sample >> 1)) : 0};
     }
 
+    // Samples first to first + count - 1, into lanes from `begin` on.
+    void start_samples(int first, int count, int begin, SampleLanes& lanes) const {
+        if (points_ == SamplePoints::random) {
+            SampleSequence one = *this;
+            for (int i = 0; i < count; ++i) {
+                one.start_sample(first + i);
+                lanes.set(begin + i, one.index_);
+            }
+            return;
+        }
+        const std::uint64_t keys[] = {mix_bits(pixel_key_), mix_bits(pixel_key_ + 1)};
+        for (int i = 0; i < count; ++i) {
+            const std::uint64_t key = keys[(first + i) & 1];
+            lanes.key_low[begin + i] = static_cast<std::uint32_t>(key);
+            lanes.key_high[begin + i] = static_cast<std::uint32_t>(key >> 32);
+            lanes.reversed_index[begin + i] = reverse_bits(static_cast<std::uint32_t>(first + i) >> 1);
+        }
+    }
+
     const SampleIndex& index() const { return index_; }
     glm::vec2 point(std::uint32_t dimension) const { return sobol_point(index_, mix_word(dimension)); }
     float number(std::uint32_t dimension) const { return point(dimension).x; }
@@ -106,17 +136,6 @@ private:
     SamplePoints points_;
     std::uint64_t pixel_key_;
     SampleIndex index_;
-};
-
-// The samples of many paths side by side.
-struct SampleLanes {
-    Lanes<std::uint32_t> key_low, key_high, reversed_index;
-
-    SampleIndex get(int lane) const { return {key_low[lane], key_high[lane], reversed_index[lane]}; }
-    void set(int lane, const SampleIndex& sample) {
-        key_low[lane] = sample.key_low, key_high[lane] = sample.key_high;
-        reversed_index[lane] = sample.reversed_index;
-    }
 };
 
 // SampleSequence::point for the first `count` lanes.

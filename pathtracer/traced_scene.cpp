@@ -69,13 +69,13 @@ struct MotionStep {
 
 struct PointGeometry {
     glm::vec3 position, ray_origin, geometric_normal, shading_normal;
-    bool back;
+    float side;  // 1: seen from the front, -1: from the back
 };
 
 // Without branches, for loops over lanes. A zero `normal_sum` (none, or opposite normals that cancel) leaves the
 // face's.
-inline PointGeometry point_geometry(const TracedTriangle& triangle, float u, float v, const glm::vec3& normal_sum,
-                                    const glm::vec3& ray_direction) {
+PLUMBLINE_INLINE PointGeometry point_geometry(const TracedTriangle& triangle, float u, float v,
+                                              const glm::vec3& normal_sum, const glm::vec3& ray_direction) {
     PointGeometry point;
     point.position = triangle.point(u, v);
     const glm::vec3 scaled_normal = triangle.scaled_normal();
@@ -84,7 +84,7 @@ inline PointGeometry point_geometry(const TracedTriangle& triangle, float u, flo
     const float inverse_length = squared_length > 0.0f ? 1.0f / std::sqrt(squared_length) : 0.0f;
     const glm::vec3 smooth = squared_length > 0.0f ? normal_sum * inverse_length : normal;
     const float side = glm::dot(normal, ray_direction) > 0.0f ? -1.0f : 1.0f;
-    point.back = side < 0.0f;
+    point.side = side;
     point.geometric_normal = side * normal;
     point.shading_normal = side * smooth;
     const float step = glm::dot(glm::abs(normal), triangle.error());
@@ -111,6 +111,7 @@ TracedScene::TracedScene(const Scene& scene, const TimeSpan& span)
     rtcSetSceneFlags(embree_scene_, RTC_SCENE_FLAG_ROBUST);
     rtcSetSceneBuildQuality(embree_scene_, RTC_BUILD_QUALITY_HIGH);
     for (std::uint32_t i = 0; i < parts_.size(); ++i) add(i, span);
+    if (has_specular_lobes_) specular_albedo_.emplace();
     rtcCommitScene(embree_scene_);
     check_embree(device_, scene_, "building its tree");
 }
@@ -138,6 +139,7 @@ void TracedScene::set_positions(RTCGeometry geometry, const Instance& instance, 
             for (int axis = 0; axis < 3; ++axis) positions[3 * i + axis] = world[axis];
         }
         part.positions.push_back(positions);
+        part.still = positions;
         const glm::mat3 normal_matrix = glm::inverseTranspose(glm::mat3(pose));
         for (const glm::vec3& normal : mesh.normals) part.normals.push_back(glm::normalize(normal_matrix * normal));
     }
@@ -213,8 +215,8 @@ void TracedScene::Part::corners(std::uint32_t triangle, float time, TracedTriang
         return glm::vec3(from[3 * vertex], from[3 * vertex + 1], from[3 * vertex + 2]);
     };
     if (steps == 1) {
-        corners.a = position(positions[0], indices[0]), corners.b = position(positions[0], indices[1]),
-        corners.c = position(positions[0], indices[2]);
+        corners.a = position(still, indices[0]), corners.b = position(still, indices[1]),
+        corners.c = position(still, indices[2]);
         return;
     }
     const MotionStep at(time, steps);
@@ -343,7 +345,14 @@ void TracedScene::transmittance(const RayBatch& rays, VectorLanes& fraction) con
             const SurfaceHit hit =
                 intersect(query, embree_scene_, origin, direction, from, rays.farthest[i], rays.time[i]);
             if (hit.missed()) break;
-            passing *= specular_surface(hit, direction, rays.time[i]).transmission;
+            if (is_plain(hit.instance)) {
+                passing = glm::vec3(0.0f);
+                break;
+            }
+            const SurfacePoint pane = surface_point(hit, direction, rays.time[i]);
+            const glm::vec3 to_viewer = -glm::normalize(direction);
+            passing *=
+                pane.specular.transmission * (1.0f - specular_albedo(pane.specular, pane.shading_normal, to_viewer));
             from = std::nextafter(hit.distance, infinite_distance);
         }
         fraction.set(i, passing);
@@ -361,7 +370,7 @@ SurfacePoint TracedScene::surface_point(const SurfaceHit& hit, const glm::vec3& 
     point.ray_origin = geometry.ray_origin;
     point.geometric_normal = geometry.geometric_normal;
     point.shading_normal = geometry.shading_normal;
-    if (!geometry.back || part.material->two_sided) {
+    if (geometry.side > 0.0f || part.material->two_sided) {
         const SurfaceSample sample = part.sample(hit);
         point.albedo = sample.albedo, point.emission = sample.emission;
         if (!part.is_plain) point.specular = specular_side(sample);
@@ -372,7 +381,7 @@ SurfacePoint TracedScene::surface_point(const SurfaceHit& hit, const glm::vec3& 
 void TracedScene::surface_points(const RayBatch& rays, const HitBatch& hits, const Lanes<int>& lanes, int count,
                                  SurfaceLanes& points) const {
     VectorLanes a, b, c, normals, directions;
-    Lanes<float> u, v, back;
+    Lanes<float> u, v, side;
     for (int i = 0; i < count; ++i) {
         const SurfaceHit& hit = hits[lanes[i]];
         const Part& part = parts_[hit.instance];
@@ -389,12 +398,12 @@ void TracedScene::surface_points(const RayBatch& rays, const HitBatch& hits, con
         points.ray_origin.set(i, point.ray_origin);
         points.geometric_normal.set(i, point.geometric_normal);
         points.shading_normal.set(i, point.shading_normal);
-        back[i] = point.back ? 1.0f : 0.0f;
+        side[i] = point.side;
     }
     for (int i = 0; i < count; ++i) {
         const SurfaceHit& hit = hits[lanes[i]];
         const Part& part = parts_[hit.instance];
-        if (back[i] != 0.0f && !part.material->two_sided) {
+        if (side[i] < 0.0f && !part.material->two_sided) {
             points.albedo.set(i, glm::vec3(0.0f)), points.emission.set(i, glm::vec3(0.0f));
         } else if (part.has_textures) {
             const SurfaceSample sample = part.sample(hit);
@@ -405,15 +414,11 @@ void TracedScene::surface_points(const RayBatch& rays, const HitBatch& hits, con
     }
 }
 
-SpecularSurface TracedScene::specular_surface(const SurfaceHit& hit, const glm::vec3& ray_direction, float time) const {
-    const Part& part = parts_[hit.instance];
-    if (part.is_plain) return {};
-    if (!part.material->two_sided) {
-        TracedTriangle corners;
-        part.corners(hit.triangle, time, corners);
-        if (glm::dot(corners.scaled_normal(), ray_direction) > 0.0f) return {};
-    }
-    return specular_side(part.sample(hit));
+glm::vec3 TracedScene::specular_albedo(const SpecularSurface& surface, const glm::vec3& shading_normal,
+                                       const glm::vec3& to_viewer) const {
+    if (!surface.has_lobe()) return glm::vec3(0.0f);
+    const float cosine = std::max(0.0f, glm::dot(lobe_normal(shading_normal, to_viewer), to_viewer));
+    return specular_albedo_->albedo(surface.f0, surface.f90, cosine, surface.alpha);
 }
 
 TracedTriangle TracedScene::triangle(std::uint32_t instance, std::uint32_t index, float time) const {

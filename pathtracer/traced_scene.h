@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 #include <glm/glm.hpp>
@@ -12,6 +13,7 @@
 #include "pathtracer/surface_hit.h"
 #include "pathtracer/time_span.h"
 #include "scenes/scene.h"
+#include "scenes/specular_albedo.h"
 
 namespace plumb {
 
@@ -52,10 +54,12 @@ public:
     // The same for the rays listed in `lanes`, the i-th of them into lane i of `points`, without specular parts.
     void surface_points(const RayBatch& rays, const HitBatch& hits, const Lanes<int>& lanes, int count,
                         SurfaceLanes& points) const;
-    // The specular side of the surface at a hit, 0 on the back of a one-sided one; all 0 for most materials, as
-    // is_plain tells without looking it up.
-    SpecularSurface specular_surface(const SurfaceHit& hit, const glm::vec3& ray_direction, float time = now) const;
+    // False where the surface may have a specular lobe or let light pass.
     bool is_plain(std::uint32_t instance) const { return parts_[instance].is_plain; }
+
+    // What share of light the specular lobe reflects, of what comes against `to_viewer`.
+    glm::vec3 specular_albedo(const SpecularSurface& surface, const glm::vec3& shading_normal,
+                              const glm::vec3& to_viewer) const;
 
     TracedTriangle triangle(std::uint32_t instance, std::uint32_t index, float time = now) const;
     // Textures looked up; the same for all points where the material has none.
@@ -71,7 +75,8 @@ private:
     struct Part {
         const Scene* scene = nullptr;
         const Material* material = nullptr;
-        std::vector<const float*> positions;          // 3 per vertex, for each step of the motion
+        const float* still = nullptr;                 // 3 per vertex, of the last step
+        std::vector<const float*> positions;          // the same for each step of the motion
         const std::uint32_t* triangles = nullptr;     // 3 per triangle
         std::vector<glm::vec3> normals;               // world space, step after step; empty: face normals
         const std::vector<glm::vec2>* uvs = nullptr;  // null where there are none
@@ -101,6 +106,7 @@ private:
     RTCDevice device_ = nullptr;
     RTCScene embree_scene_ = nullptr;
     std::vector<Part> parts_;
+    std::optional<SpecularAlbedo> specular_albedo_;  // where there are specular lobes
     bool has_specular_lobes_ = false, has_transparency_ = false, has_delta_lobes_ = false;
     RayRecorder* recorder_ = nullptr;
     mutable RTCScene layered_scene_ = nullptr;  // made when the first oracle asks
