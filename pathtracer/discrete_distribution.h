@@ -42,8 +42,15 @@ public:
     }
 
 private:
+    // The first item whose cumulative weight exceeds the target: bisection without branches that could be mispredicted.
     std::size_t find(double target) const {
-        return static_cast<std::size_t>(std::ranges::upper_bound(cumulative_, target) - cumulative_.begin());
+        const double* first = cumulative_.data();
+        for (std::size_t length = cumulative_.size(); length > 1;) {
+            const std::size_t half = length / 2;
+            first += static_cast<std::size_t>(first[half - 1] <= target) * half;
+            length -= half;
+        }
+        return static_cast<std::size_t>(first - cumulative_.data());
     }
 
     std::vector<double> cumulative_;

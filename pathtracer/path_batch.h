@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <numeric>
 
 #include <glm/glm.hpp>
 
@@ -32,11 +31,13 @@ struct VertexBatch {
     VectorLanes throughput;  // of the path up to here
     Lanes<std::uint8_t> is_plain;
     bool all_plain = true;
+    bool each_its_path = false;                       // lane i is path i
     std::array<SpecularVertex, most_lanes> specular;  // for lanes that are not plain
 
     void clear() {
         count = 0;
         all_plain = true;
+        each_its_path = false;
     }
 
     // Takes over lane `from` of `other`.
@@ -57,7 +58,7 @@ struct VertexBatch {
 
     // Gives lanes begin + 1 to end - 1 the vertex of lane `begin`, as paths and with samples of their own.
     void repeat(int begin, int end) {
-        std::iota(path.begin() + begin, path.begin() + end, path[begin]);
+        for (int lane = begin; lane < end; ++lane) path[lane] = lane;
         std::fill(time.begin() + begin, time.begin() + end, time[begin]);
         ray_origin.fill(begin, end, ray_origin.get(begin));
         geometric_normal.fill(begin, end, geometric_normal.get(begin));
@@ -87,8 +88,12 @@ struct ScatteredRays {
     Lanes<float> density;  // per solid angle; 0: nothing else finds this direction
     Lanes<int> ended;      // lanes whose direction led into their own surface
     int ended_count = 0;
+    bool all_leave = false;  // every vertex's ray is in its own lane
 
-    void clear() { rays.count = ended_count = 0; }
+    void clear() {
+        rays.count = ended_count = 0;
+        all_leave = false;
+    }
     void add(int lane, const glm::vec3& origin, const glm::vec3& direction, float time, const glm::vec3& with_weight,
              float with_density) {
         vertex[rays.count] = lane, density[rays.count] = with_density;

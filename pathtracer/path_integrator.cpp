@@ -1,7 +1,6 @@
 #include "pathtracer/path_integrator.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include <glm/gtc/constants.hpp>
 
@@ -37,6 +36,7 @@ glm::vec3 PathIntegrator::add_start(const SurfacePoint& x, const glm::vec3& dire
                                     float time, VertexBatch& batch) const {
     const int lane = batch.count++;
     batch.path[lane] = lane;
+    batch.each_its_path = true;
     batch.samples.set(lane, sample);
     batch.time[lane] = time;
     batch.ray_origin.set(lane, x.ray_origin);
@@ -66,17 +66,17 @@ Scattering PathIntegrator::scattering(const VertexBatch& vertices, int lane, int
 void PathIntegrator::next_event(const VertexBatch& vertices, int vertex, Start start, ShadowRays& shadow,
                                 VectorLanes& sum, int& rays) const {
     const bool specular_start = start == Start::specular;
-    Lanes<float> pick, unused, x, y;
+    Lanes<float> pick, x, y;
     LightLanes lights;
     if (lights_.has_extended_lights()) {
-        sample_points(vertices.samples, vertices.count, dimension(vertex, specular_start, extended_pick), pick, unused);
+        sample_numbers(vertices.samples, vertices.count, dimension(vertex, specular_start, extended_pick), pick);
         sample_points(vertices.samples, vertices.count, dimension(vertex, specular_start, extended_point), x, y);
         lights_.sample_extended(vertices, pick, x, y, lights);
         connect(vertices, vertex, start, lights, shadow, sum, rays);
     }
     const bool exact_already = vertex == 0 && !specular_start && plan_.exact_lights_at_first_point;
     if (lights_.lights_without_extent() > 0 && !exact_already) {
-        sample_points(vertices.samples, vertices.count, dimension(vertex, specular_start, other_pick), pick, unused);
+        sample_numbers(vertices.samples, vertices.count, dimension(vertex, specular_start, other_pick), pick);
         for (int i = 0; i < vertices.count; ++i) {
             lights.set(i, lights_.sample_without_extent(
                               {vertices.ray_origin.get(i), vertices.shading_normal.get(i), vertices.time[i]}, pick[i]));
@@ -172,7 +172,8 @@ void PathIntegrator::scatter(const VertexBatch& vertices, int vertex, Start star
     scattered.clear();
     if (all_leave > 0.0f && (leaves_diffusely || vertices.all_plain)) {
         rays.count = vertices.count;
-        std::iota(scattered.vertex.begin(), scattered.vertex.begin() + rays.count, 0);
+        scattered.all_leave = true;
+        for (int i = 0; i < rays.count; ++i) scattered.vertex[i] = i;
         scattered.weight = leaves_diffusely ? unit_weight : vertices.albedo;
         rays.origin = vertices.ray_origin;
         rays.time = vertices.time;
@@ -331,11 +332,19 @@ void PathIntegrator::follow(const VertexBatch& starts, Start start, PathWorkspac
                                     !(looks_for_emitters && lights_.rays_find_triangles()) &&
                                     !(tests_visibility && (looks_for_emitters || plan_.ao_falloff != Falloff::hard));
         if (any_hit_serves) {
-            Lanes<std::uint8_t> blocked;
+            Lanes<int> blocked;
             scene_.occluded(rays, blocked, layers_);
-            for (int i = 0; i < rays.count; ++i) {
-                if (blocked[i] && tests_visibility) estimate.ambient_visibility[path_of(i)] = nearest_visibility;
-                if (!blocked[i] && looks_for_emitters) gather_background(i);
+            if (tests_visibility && scattered.all_leave && starts.each_its_path) {
+                for (int i = 0; i < rays.count; ++i) {
+                    estimate.ambient_visibility[i] = blocked[i] ? nearest_visibility : 1.0f;
+                }
+            } else if (tests_visibility) {
+                for (int i = 0; i < rays.count; ++i) {
+                    if (blocked[i]) estimate.ambient_visibility[path_of(i)] = nearest_visibility;
+                }
+            }
+            for (int i = 0; i < rays.count && looks_for_emitters; ++i) {
+                if (!blocked[i]) gather_background(i);
             }
             return;
         }

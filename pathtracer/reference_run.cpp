@@ -150,9 +150,10 @@ void ReferenceRun::add_centre_samples(int x, int y, int first_sample, int count,
                   static_cast<std::uint32_t>(pixel));
         scratch.samples.albedo.fill(begin, end, albedo);
         sequence.start_samples(sample, end - begin, begin, starts.samples);
-        for (int lane = begin; lane < end; ++lane, ++sample) {
-            scratch.samples.half[lane] = static_cast<std::uint8_t>(sample & 1);
+        for (int lane = begin; lane < end; ++lane) {
+            scratch.samples.half[lane] = static_cast<std::uint8_t>((sample + lane - begin) & 1);
         }
+        sample += end - begin;
         if (end == most_lanes) flush(scratch);
     }
 }

@@ -119,12 +119,15 @@ public:
             }
             return;
         }
-        const std::uint64_t keys[] = {mix_bits(pixel_key_), mix_bits(pixel_key_ + 1)};
+        const std::uint64_t even = mix_bits(pixel_key_), odd = mix_bits(pixel_key_ + 1);
+        const auto low = [](std::uint64_t key) { return static_cast<std::uint32_t>(key); };
+        const std::uint32_t lows[] = {low(even), low(odd)}, highs[] = {low(even >> 32), low(odd >> 32)};
         for (int i = 0; i < count; ++i) {
-            const std::uint64_t key = keys[(first + i) & 1];
-            lanes.key_low[begin + i] = static_cast<std::uint32_t>(key);
-            lanes.key_high[begin + i] = static_cast<std::uint32_t>(key >> 32);
-            lanes.reversed_index[begin + i] = reverse_bits(static_cast<std::uint32_t>(first + i) >> 1);
+            const auto sample = static_cast<std::uint32_t>(first + i);
+            const bool in_half_b = (sample & 1) != 0;
+            lanes.key_low[begin + i] = in_half_b ? lows[1] : lows[0];
+            lanes.key_high[begin + i] = in_half_b ? highs[1] : highs[0];
+            lanes.reversed_index[begin + i] = reverse_bits(sample >> 1);
         }
     }
 
@@ -146,6 +149,12 @@ inline void sample_points(const SampleLanes& samples, int count, std::uint32_t d
         const glm::vec2 point = sobol_point(samples.get(i), mixed_dimension);
         x[i] = point.x, y[i] = point.y;
     }
+}
+
+// The same for one number each.
+inline void sample_numbers(const SampleLanes& samples, int count, std::uint32_t dimension, Lanes<float>& x) {
+    const std::uint32_t mixed_dimension = mix_word(dimension);
+    for (int i = 0; i < count; ++i) x[i] = sobol_point(samples.get(i), mixed_dimension).x;
 }
 
 }  // namespace plumb

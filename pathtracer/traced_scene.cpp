@@ -92,6 +92,21 @@ PLUMBLINE_INLINE PointGeometry point_geometry(const TracedTriangle& triangle, fl
     return point;
 }
 
+// Rays `first` and following into a packet; lanes beyond the last ray are not valid.
+template <int width, typename Packet>
+void copy_rays(const RayBatch& rays, int first, Packet& packet, std::array<int, width>& valid) {
+    const auto copy = [first](float* to, const Lanes<float>& from) {
+        std::memcpy(to, &from[first], width * sizeof(float));
+    };
+    copy(packet.org_x, rays.origin.x), copy(packet.org_y, rays.origin.y), copy(packet.org_z, rays.origin.z);
+    copy(packet.dir_x, rays.direction.x), copy(packet.dir_y, rays.direction.y), copy(packet.dir_z, rays.direction.z);
+    copy(packet.tnear, rays.nearest), copy(packet.tfar, rays.farthest), copy(packet.time, rays.time);
+    for (int i = 0; i < width; ++i) {
+        valid[i] = first + i < rays.count ? -1 : 0;
+        packet.mask[i] = 0xffffffffu, packet.id[i] = 0, packet.flags[i] = 0;
+    }
+}
+
 SpecularSurface specular_side(const SurfaceSample& sample) {
     return {sample.specular_f0, sample.specular_f90, ggx_alpha(sample.roughness), sample.transmission};
 }
@@ -209,8 +224,9 @@ RTCScene TracedScene::scene_for_layers() const {
     return layered_scene_;
 }
 
-void TracedScene::Part::corners(std::uint32_t triangle, float time, TracedTriangle& corners) const {
-    const std::uint32_t* indices = triangles + 3 * triangle;
+// Inlined where surfaces are looked up by the batch.
+PLUMBLINE_INLINE void TracedScene::Part::corners(std::uint32_t triangle, float time, TracedTriangle& corners) const {
+    const std::uint32_t* indices = triangles + 3 * static_cast<std::size_t>(triangle);
     const auto position = [](const float* from, std::uint32_t vertex) {
         return glm::vec3(from[3 * vertex], from[3 * vertex + 1], from[3 * vertex + 2]);
     };
@@ -298,13 +314,25 @@ void TracedScene::intersect(const RayBatch& rays, HitBatch& hits, RayCoherence c
     if (recorder_) recorder_->add_nearest(rays);
     EmbreeQuery query(coherence, layers ? &TracedScene::reject_what_layers_lack : nullptr, layers);
     const RTCScene scene = layers ? scene_for_layers() : embree_scene_;
-    for (int i = 0; i < rays.count; ++i) {
-        hits[i] = intersect(query, scene, rays.origin.get(i), rays.direction.get(i), rays.nearest[i], rays.farthest[i],
-                            rays.time[i]);
+    // Eight rays together find the very hits that each finds alone, some tenth sooner (benchmark `packets`).
+    constexpr int width = 8;
+    for (int first = 0; first < rays.count; first += width) {
+        alignas(32) std::array<int, width> valid;
+        RTCRayHit8 packet;
+        copy_rays<width>(rays, first, packet.ray, valid);
+        std::fill_n(packet.hit.geomID, width, RTC_INVALID_GEOMETRY_ID);
+        std::fill_n(packet.hit.instID[0], width, RTC_INVALID_GEOMETRY_ID);
+        query.intersect(scene, valid.data(), packet);
+        for (int i = 0; i < std::min(width, rays.count - first); ++i) {
+            const bool missed = packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID;
+            hits[first + i] = missed ? SurfaceHit{}
+                                     : SurfaceHit{packet.hit.geomID[i], packet.hit.primID[i], packet.hit.u[i],
+                                                  packet.hit.v[i], packet.ray.tfar[i]};
+        }
     }
 }
 
-void TracedScene::occluded(const RayBatch& rays, Lanes<std::uint8_t>& blocked, const OracleLayers* layers) const {
+void TracedScene::occluded(const RayBatch& rays, Lanes<int>& blocked, const OracleLayers* layers) const {
     if (recorder_) recorder_->add_any(rays);
     EmbreeQuery query(RayCoherence::incoherent, layers ? &TracedScene::reject_what_layers_lack : nullptr, layers);
     const RTCScene scene = layers ? scene_for_layers() : embree_scene_;
@@ -312,17 +340,7 @@ void TracedScene::occluded(const RayBatch& rays, Lanes<std::uint8_t>& blocked, c
     for (int first = 0; first < rays.count; first += width) {
         alignas(64) std::array<int, width> valid;
         RTCRay16 packet;
-        const auto copy = [first](float* to, const Lanes<float>& from) {
-            std::memcpy(to, &from[first], width * sizeof(float));
-        };
-        copy(packet.org_x, rays.origin.x), copy(packet.org_y, rays.origin.y), copy(packet.org_z, rays.origin.z);
-        copy(packet.dir_x, rays.direction.x), copy(packet.dir_y, rays.direction.y);
-        copy(packet.dir_z, rays.direction.z), copy(packet.tnear, rays.nearest), copy(packet.tfar, rays.farthest);
-        copy(packet.time, rays.time);
-        for (int i = 0; i < width; ++i) {
-            valid[i] = first + i < rays.count ? -1 : 0;
-            packet.mask[i] = 0xffffffffu, packet.id[i] = 0, packet.flags[i] = 0;
-        }
+        copy_rays<width>(rays, first, packet, valid);
         query.occluded(scene, valid.data(), packet);
         // Embree sets minus infinity where something is in the way.
         for (int i = 0; i < width; ++i) blocked[first + i] = packet.tfar[i] < 0.0f ? 1 : 0;
@@ -331,7 +349,7 @@ void TracedScene::occluded(const RayBatch& rays, Lanes<std::uint8_t>& blocked, c
 
 void TracedScene::transmittance(const RayBatch& rays, VectorLanes& fraction) const {
     if (!has_transparency_) {
-        Lanes<std::uint8_t> blocked;
+        Lanes<int> blocked;
         occluded(rays, blocked);
         for (int i = 0; i < rays.count; ++i) fraction.set(i, glm::vec3(blocked[i] ? 0.0f : 1.0f));
         return;

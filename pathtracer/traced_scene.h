@@ -46,7 +46,7 @@ public:
     void intersect(const RayBatch& rays, HitBatch& hits, RayCoherence coherence = RayCoherence::incoherent,
                    const OracleLayers* layers = nullptr) const;
     // Sets blocked[i] to whether anything lies between 0 and the ray's farthest point.
-    void occluded(const RayBatch& rays, Lanes<std::uint8_t>& blocked, const OracleLayers* layers = nullptr) const;
+    void occluded(const RayBatch& rays, Lanes<int>& blocked, const OracleLayers* layers = nullptr) const;
     // What fraction of light passes: 0 where something opaque is in the way, else the product over the panes.
     void transmittance(const RayBatch& rays, VectorLanes& fraction) const;
 
