@@ -102,7 +102,8 @@ Image picture_of_plane(std::string_view plane, const Image& image, const Picture
     if (name == "normal") return picture_of_vectors(image);
     if (name == "motion" || name == "position")
         return picture_of_vectors(scaled(image, 1.0f / largest_magnitude(image)));
-    if (name == "ao" || name == "alpha") return picture_of_scalar(image, settings.low, settings.high);
+    if (name == "ao" || name == "alpha" || name == "seen_before")
+        return picture_of_scalar(image, settings.low, settings.high);
     return picture_of_radiance(image, settings.exposure);
 }
 

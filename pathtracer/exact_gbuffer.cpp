@@ -41,20 +41,71 @@ std::vector<SurfaceHit> trace_layer(const TracedScene& scene, const View& view, 
     return hits;
 }
 
-// Pixels from the point's place in the previous view to its place now.
-glm::vec2 motion_of(const View& view, const View* previous_view, const glm::vec3& now, const glm::vec3& before) {
-    if (!previous_view) return {0.0f, 0.0f};
-    const glm::vec3 previous = previous_view->project(before);
-    if (!(previous.z > 0.0f)) return glm::vec2(infinite_distance);
-    return glm::vec2(previous) - glm::vec2(view.project(now));
+// What the frame before this one saw: from where, and whether anything could have moved since.
+struct PreviousFrame {
+    const View& view;
+    bool stood_still;  // no other view was given, and nothing moves
+
+    // Pixels from the point's place in the previous view to its place now.
+    glm::vec2 motion(const View& view_now, const glm::vec3& point_now, const glm::vec3& point_before) const {
+        if (stood_still) return {0.0f, 0.0f};
+        const glm::vec3 previous = view.project(point_before);
+        if (!(previous.z > 0.0f)) return glm::vec2(infinite_distance);
+        return glm::vec2(previous) - glm::vec2(view_now.project(point_now));
+    }
+    bool frames(const glm::vec3& point) const {
+        const glm::vec3 at = view.project(point);
+        return at.z > 0.0f && at.x >= 0.0f && at.x < static_cast<float>(view.width()) && at.y >= 0.0f &&
+               at.y < static_cast<float>(view.height());
+    }
+};
+
+constexpr float before = 0.0f;  // the begin of the scene's time span
+
+// Where the surface point that a ray hits now was in the previous frame.
+glm::vec3 position_before(const TracedScene& scene, const SurfaceHit& hit) {
+    return scene.triangle(hit.instance, hit.triangle, before).point(hit.u, hit.v);
+}
+
+// Whether the previous frame saw the surface point that a ray hits now.
+bool seen_before(const TracedScene& scene, const PreviousFrame& previous, const SurfaceHit& hit) {
+    const glm::vec3 position = position_before(scene, hit);
+    if (!previous.frames(position)) return false;
+    const Camera& camera = previous.view.camera();
+    const float depth = previous.view.project(position).z;
+    if (depth < camera.near_plane || depth > camera.far_plane) return false;
+    const glm::vec3 eye = camera.position();
+    const glm::vec3 origin = scene.surface_point(hit, glm::normalize(position - eye), before).ray_origin;
+    // Towards the eye as far as the near plane: what is nearer is not drawn.
+    return scene
+        .intersect(origin, eye - origin, positive_distance, 1.0f - camera.near_plane / depth, RayCoherence::coherent,
+                   before)
+        .missed();
+}
+
+// The same for what lies infinitely far away in `direction`.
+bool background_seen_before(const TracedScene& scene, const PreviousFrame& previous, const glm::vec3& direction) {
+    const Camera& camera = previous.view.camera();
+    if (!previous.frames(camera.position() + direction)) return false;
+    const float scale = depth_per_distance(previous.view, direction);
+    return scene
+        .intersect(camera.position(), direction, camera.near_plane / scale, camera.far_plane / scale,
+                   RayCoherence::coherent, before)
+        .missed();
 }
 
 struct PlaneName {
     std::string_view name;
     int channels;
 };
-constexpr std::array<PlaneName, 7> plane_names = {
-    {{"depth", 1}, {"normal", 3}, {"albedo", 3}, {"position", 3}, {"motion", 2}, {"instance", 1}, {"emission", 3}}};
+constexpr std::array<PlaneName, 8> plane_names = {{{"depth", 1},
+                                                   {"normal", 3},
+                                                   {"albedo", 3},
+                                                   {"position", 3},
+                                                   {"motion", 2},
+                                                   {"instance", 1},
+                                                   {"emission", 3},
+                                                   {"seen_before", 1}}};
 
 std::string_view without_layer(std::string_view plane) {
     return plane.starts_with("layer") ? plane.substr(std::min(plane.find('.') + 1, plane.size())) : plane;
@@ -101,6 +152,7 @@ void write_gbuffer_plane(const TracedScene& scene, const View& view, const View*
     if (found == plane_names.end()) throw ReferenceError(fmt::format("plane '{}' is not one of a G-buffer", plane));
     Image& image = frame.set(plane, Image(view.width(), view.height(), found->channels));
     const bool first = layer_of(plane) == 1;
+    const PreviousFrame previous{previous_view ? *previous_view : view, !previous_view && !scene.anything_moves()};
     tbb::parallel_for(0, view.height(), [&](int y) {
         for (int x = 0; x < view.width(); ++x) {
             const Ray ray = centre_ray(view, x, y);
@@ -120,12 +172,16 @@ void write_gbuffer_plane(const TracedScene& scene, const View& view, const View*
                 value = missed && first ? scene.scene().environment_radiance(ray.direction) : point.emission;
             } else if (base == "instance") {
                 value.x = missed ? -1.0f : static_cast<float>(hit.instance);
+            } else if (base == "seen_before") {
+                const bool seen =
+                    missed ? background_seen_before(scene, previous, ray.direction) : seen_before(scene, previous, hit);
+                value.x = seen ? 1.0f : 0.0f;
             } else if (missed) {
-                const glm::vec3 before = previous_view ? previous_view->camera().position() : ray.origin;
-                value =
-                    glm::vec3(motion_of(view, previous_view, ray.origin + ray.direction, before + ray.direction), 0.0f);
+                value = glm::vec3(previous.motion(view, ray.origin + ray.direction,
+                                                  previous.view.camera().position() + ray.direction),
+                                  0.0f);
             } else {
-                value = glm::vec3(motion_of(view, previous_view, point.position, point.position), 0.0f);
+                value = glm::vec3(previous.motion(view, point.position, position_before(scene, hit)), 0.0f);
             }
             for (int c = 0; c < found->channels; ++c) image.at(x, y, c) = value[c];
         }

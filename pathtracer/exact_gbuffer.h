@@ -20,7 +20,7 @@ std::vector<SurfaceHit> next_layer(const TracedScene& scene, const View& view, c
 // Metres along the camera's -Z per metre along a pixel's unit direction.
 float depth_per_distance(const View& view, const glm::vec3& direction);
 
-// True for depth, normal, albedo, position, motion, instance, also after "layer2." and so on.
+// True for depth, normal, albedo, position, motion, instance, seen_before, also after "layer2." and so on.
 bool is_gbuffer_plane(std::string_view plane);
 // 1 for the planes without prefix, N for "layerN."; 0 where the prefix is malformed.
 int layer_of(std::string_view plane);

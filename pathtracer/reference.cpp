@@ -78,7 +78,8 @@ Frame PathTracer::gbuffer(const View& view, const LayerSettings& settings, int t
         for (int layer = 1; layer <= settings.layers; ++layer) {
             if (layer > 1) hits = next_layer(implementation_->traced, view, hits, settings.minimum_separation);
             const std::string prefix = layer == 1 ? "" : fmt::format("layer{}.", layer);
-            for (const char* plane : {"depth", "normal", "albedo", "position", "motion", "instance", "emission"}) {
+            for (const char* plane :
+                 {"depth", "normal", "albedo", "position", "motion", "instance", "emission", "seen_before"}) {
                 write_gbuffer_plane(implementation_->traced, view, settings.previous_view, hits, prefix + plane, frame);
             }
         }

@@ -14,7 +14,7 @@ namespace {
 [[noreturn]] void refuse_plane(const std::string& plane) {
     throw ReferenceError(fmt::format(
         "the path tracer has no plane '{}'; it has ao, direct, indirect, indirect.1.., irradiance, reflection, "
-        "emission, total, depth, normal, albedo, position, motion, instance, and layer2.depth and so on",
+        "emission, total, depth, normal, albedo, position, motion, instance, seen_before, and layer2.depth and so on",
         plane));
 }
 

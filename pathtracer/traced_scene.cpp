@@ -177,6 +177,7 @@ void TracedScene::add(std::uint32_t index, const TimeSpan& span) {
                         part.material->metallic_roughness_texture != no_texture ||
                         part.material->emission_texture != no_texture;
     part.is_plain = !part.material->has_specular_lobe() && !part.material->is_transparent();
+    anything_moves_ |= part.steps > 1;
     has_specular_lobes_ |= part.material->has_specular_lobe();
     has_transparency_ |= part.material->is_transparent();
     // A texture only lowers the roughness.

@@ -35,6 +35,7 @@ public:
     bool has_specular_lobes() const { return has_specular_lobes_; }
     bool has_transparency() const { return has_transparency_; }
     bool has_delta_lobes() const { return has_delta_lobes_; }  // mirrors or transparency, perhaps
+    bool anything_moves() const { return anything_moves_; }
     bool moves(std::uint32_t instance) const { return parts_[instance].steps > 1; }
 
     // The nearest hit with nearest <= distance <= farthest, in units of the direction's length.
@@ -107,7 +108,7 @@ private:
     RTCScene embree_scene_ = nullptr;
     std::vector<Part> parts_;
     std::optional<SpecularAlbedo> specular_albedo_;  // where there are specular lobes
-    bool has_specular_lobes_ = false, has_transparency_ = false, has_delta_lobes_ = false;
+    bool has_specular_lobes_ = false, has_transparency_ = false, has_delta_lobes_ = false, anything_moves_ = false;
     RayRecorder* recorder_ = nullptr;
     mutable RTCScene layered_scene_ = nullptr;  // made when the first oracle asks
     mutable std::once_flag layered_scene_made_;

@@ -146,6 +146,79 @@ TEST(GBuffer, MotionIsPositionBeforeMinusPositionNow) {
     for (const float value : turned.plane("motion").values()) EXPECT_EQ(value, infinity);
 }
 
+// A square at depth 4 moves by (1, 0.5, 0) while the camera stands still: a point of it was that much to the left and
+// below, which is pixels_per_metre / depth pixels for each metre.
+TEST(GBuffer, MotionOfAMovingInstanceIsItsOwn) {
+    Scene scene;
+    const int white = add_material(scene, glm::vec3(0.5f));
+    add_quads(scene, white, {screen(4.0f, 30.0f)});
+    scene.instances[0].motion.keys = {{.time = 0.0f}, {.time = 2.0f, .translation = {1.0f, 0.5f, 0.0f}}};
+    scene.instances[0].motion.interpolation = MotionInterpolation::linear;
+    scene.move_to(2.0);
+    const View view = forward_view();
+    const Frame frame = PathTracer(scene, {0.0, 2.0}).gbuffer(view);
+    const float pixels = view.pixels_per_metre() / 4.0f;
+    for (int i = 0; i < view.width(); ++i) {
+        // 1e-4 pixels: roundings of positions some 30 m wide.
+        EXPECT_NEAR(frame.plane("motion").at(i, 5, 0), -pixels, 1e-4f * 30.0f);
+        EXPECT_NEAR(frame.plane("motion").at(i, 5, 1), 0.5f * pixels, 1e-4f * 30.0f);
+    }
+}
+
+// Before a wall at depth 4 a square of half a metre at depth 2 hides what the previous camera, one metre to the right,
+// saw behind it; what that camera did not frame was not seen either.
+TEST(GBuffer, SeenBeforeIsWhatThePreviousCameraFramedAndNothingHid) {
+    Scene scene;
+    const int white = add_material(scene, glm::vec3(0.5f));
+    add_quads(scene, white, {screen(4.0f)});
+    add_quads(scene, white, {screen(2.0f, 0.5f)});
+    const View now = forward_view(64), before = view_of({1, 0, 0}, {1, 0, -1}, 1.0f, 64);
+    const Frame frame = PathTracer(scene).gbuffer(now, {.previous_view = &before});
+    const float half_angle = std::tan(0.5f);
+    int hidden = 0, outside = 0;
+    for (int y = 0; y < 64; ++y) {
+        for (int x = 0; x < 64; ++x) {
+            const glm::vec3 p = colour_at(frame.plane("position"), x, y);
+            const glm::vec3 from_before = p - glm::vec3(1, 0, 0);
+            const glm::vec2 on_screen = glm::vec2(from_before) / (-from_before.z * half_angle);
+            const bool framed = std::abs(on_screen.x) < 1.0f && std::abs(on_screen.y) < 1.0f;
+            const glm::vec2 crossing = glm::vec2(1, 0) + glm::vec2(from_before) * (2.0f / -from_before.z);
+            const bool behind = p.z < -3.0f && std::abs(crossing.x) < 0.5f && std::abs(crossing.y) < 0.5f;
+            // Within rounding of an edge either answer is right.
+            const float to_edge =
+                std::min(std::abs(std::abs(crossing.x) - 0.5f), std::abs(std::abs(crossing.y) - 0.5f));
+            const float to_frame =
+                std::min(std::abs(std::abs(on_screen.x) - 1.0f), std::abs(std::abs(on_screen.y) - 1.0f));
+            if (to_edge < 1e-4f || to_frame < 1e-4f) continue;
+            hidden += framed && behind ? 1 : 0, outside += framed ? 0 : 1;
+            EXPECT_EQ(frame.plane("seen_before").at(x, y), framed && !behind ? 1.0f : 0.0f) << x << ", " << y;
+        }
+    }
+    EXPECT_GT(hidden, 50);
+    EXPECT_GT(outside, 100);
+}
+
+// The same with the square in the past only: it left for another place when the span began.
+TEST(GBuffer, SeenBeforeAsksTheSceneAsItStoodThen) {
+    Scene scene;
+    const int white = add_material(scene, glm::vec3(0.5f));
+    add_quads(scene, white, {screen(4.0f)});
+    add_quads(scene, white, {screen(2.0f, 0.5f)});
+    scene.instances[1].motion.keys = {{.time = 0.0f}, {.time = 1.0f, .translation = {100.0f, 0.0f, 0.0f}}};
+    scene.move_to(1.0);
+    const View view = forward_view(64);
+    const Frame frame = PathTracer(scene, {0.0, 1.0}).gbuffer(view);
+    for (int y = 0; y < 64; ++y) {
+        for (int x = 0; x < 64; ++x) {
+            const glm::vec3 p = colour_at(frame.plane("position"), x, y);
+            EXPECT_NEAR(p.z, -4.0f, 1e-4f);
+            const float edge = std::max(std::abs(p.x), std::abs(p.y));  // the square's shadow on the wall is 1 m wide
+            if (std::abs(edge - 1.0f) < 1e-4f) continue;
+            EXPECT_EQ(frame.plane("seen_before").at(x, y), edge > 1.0f ? 1.0f : 0.0f) << x << ", " << y;
+        }
+    }
+}
+
 TEST(GBuffer, PositionAgreesWithDepthAndTheCamera) {
     const Scene scene = make_cornell();
     const View view(scene.cameras[1], 32, 24);
