@@ -56,7 +56,8 @@ double summed_obscurance(const std::function<double(double u, double v, double w
 constexpr double sum_error = 1e-4;  // three times the above
 
 void expect_obscurance(const std::function<double(double radius, Falloff kind)>& formula,
-                       const std::function<double(double u, double v, double w)>& hit, std::vector<double> radii) {
+                       const std::function<double(double u, double v, double w)>& hit,
+                       const std::vector<double>& radii) {
     for (const double radius : radii) {
         for (const Falloff kind : falloffs) {
             EXPECT_NEAR(formula(radius, kind), summed_obscurance(hit, radius, kind), sum_error)

@@ -181,7 +181,6 @@ TEST(ErrorBars, OfTheSquaredErrorContainItAsOftenAsTheySay) {
                 } else {
                     EXPECT_GE(inside, 0.90 * count) << what;
                 }
-                RecordProperty(what, inside);
             }
         }
     }

@@ -94,7 +94,8 @@ public:
         std::size_t first = 0;
         for (int block = 1;; block *= 2) {
             const int columns = (width_ + block - 1) / block, rows = (height_ + block - 1) / block;
-            const auto values = static_cast<std::size_t>(columns * rows * channels_);
+            const auto values = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows) *
+                                static_cast<std::size_t>(channels_);
             if (i < first + values) {
                 const int rest = static_cast<int>(i - first);
                 return fmt::format("block of {} pixels at {}, {}, channel {}", block,
