@@ -62,6 +62,9 @@ public:
     // False once a sum has grown so large that its last bits depend on the order of the samples.
     bool is_exact() const;
 
+    // Gives the memory back; nothing may be asked afterwards.
+    void release() { std::vector<double>().swap(sums_); }
+
     std::span<double> values() { return sums_; }
     std::span<const double> values() const { return sums_; }
 

@@ -140,9 +140,9 @@ public:
     // Planes depth, normal, albedo, position (world), motion (pixels: position in the previous view minus position now;
     // of a point at infinity where nothing is met; infinite where the point was behind the previous camera), emission,
     // instance (index into Scene::instances, -1: nothing), and seen_before (1 where the previous view saw the surface
-    // point: within its frame and with nothing in front, as the scene stood when the time span began) of the first layer; "layer2." and so on before the names
-    // of the others. Alpha-masked holes are no surface. Nothing nearer than the near plane or deeper than the far plane
-    // is met.
+    // point: within its frame and with nothing in front, as the scene stood when the time span began) of the first
+    // layer; "layer2." and so on before the names of the others. Alpha-masked holes are no surface. Nothing nearer than
+    // the near plane or deeper than the far plane is met.
     Frame gbuffer(const View& view, const LayerSettings& settings = {}, int threads = 0) const;
 
 private:

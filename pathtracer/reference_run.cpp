@@ -344,7 +344,7 @@ ReferenceResult ReferenceRun::merge(const std::vector<std::filesystem::path>& sh
     return finish(true);
 }
 
-ReferenceResult ReferenceRun::finish(bool complete) const {
+ReferenceResult ReferenceRun::finish(bool complete) {
     ReferenceResult result{Frame(view_.width(), view_.height()),
                            samples_done(),
                            state_.seconds,
@@ -359,6 +359,7 @@ ReferenceResult ReferenceRun::finish(bool complete) const {
             write_gbuffer_plane(scene_, view_, nullptr, hits_, plane.name, result.frame);
         }
     }
+    accumulation_.release();  // before the G-buffer's planes take as much again
     const View* previous = settings_.previous_view ? &*settings_.previous_view : nullptr;
     std::vector<SurfaceHit> hits = hits_;
     for (int layer = 1; layer <= plan_.layers; ++layer) {

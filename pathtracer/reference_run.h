@@ -47,7 +47,7 @@ private:
     void flush(Scratch& scratch);
     Ray primary_ray(int x, int y, const SampleSequence& sequence, float time) const;
     double worst_error() const;
-    ReferenceResult finish(bool complete) const;
+    ReferenceResult finish(bool complete);  // the sums are gone afterwards
     int samples_done() const { return state_.end - state_.begin; }
     std::size_t pixel_index(int x, int y) const {
         return static_cast<std::size_t>(y) * static_cast<std::size_t>(view_.width()) + static_cast<std::size_t>(x);
