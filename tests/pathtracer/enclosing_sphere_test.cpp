@@ -209,7 +209,8 @@ Enclosure image_over_bowl() {
     constexpr double cell = pi * pi / (steps * steps);
     double irradiance = 0.0;
     for (int i = 0; i < steps * steps; ++i) {
-        const double theta = 0.5 * pi * (i / steps + 0.5) / steps, phi = 2.0 * pi * (i % steps + 0.5) / steps;
+        const int row = i / steps, column = i % steps;
+        const double theta = 0.5 * pi * (row + 0.5) / steps, phi = 2.0 * pi * (column + 0.5) / steps;
         const glm::vec3 direction(std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi));
         irradiance += sky.environment_radiance(direction).x * std::cos(theta) * std::sin(theta) * cell;
     }

@@ -53,7 +53,8 @@ TEST_P(ExchangeBySampling, BetweenParallelSquaresFollowsTheirViewFactor) {
     std::vector<double> factors;
     double mean = 0.0, mean_square = 0.0, chain = 0.0;
     for (int i = 0; i < steps * steps; ++i) {
-        points.emplace_back((i % steps + 0.5) / steps - 0.5, (i / steps + 0.5) / steps - 0.5);
+        const int row = i / steps, column = i % steps;
+        points.emplace_back((column + 0.5) / steps - 0.5, (row + 0.5) / steps - 0.5);
         const glm::dvec3 point(points.back().x, 0.0, points.back().y);
         factors.push_back(closed_form::polygon_irradiance(point, {0, 1, 0}, upper) / pi);
         mean += factors.back() / (steps * steps), mean_square += factors.back() * factors.back() / (steps * steps);
@@ -94,7 +95,8 @@ TEST(Exchange, OfAWallAndAFloorFollowsTheirViewFactor) {
     constexpr int steps = 400;  // as in ClosedForm.ViewFactorsOfRectanglesAreMeansOfPointViewFactors: 1e-5
     double mean_square = 0.0;
     for (int i = 0; i < steps * steps; ++i) {
-        const glm::dvec3 point((i % steps + 0.5) / steps, 0.0, (i / steps + 0.5) / steps);
+        const int row = i / steps, column = i % steps;
+        const glm::dvec3 point((column + 0.5) / steps, 0.0, (row + 0.5) / steps);
         const double factor = closed_form::polygon_irradiance(point, {0, 1, 0}, wall) / pi;
         mean_square += factor * factor / (steps * steps);
     }
