@@ -8,6 +8,7 @@
 
 #include "experiments/backend_option.h"
 #include "experiments/command.h"
+#include "experiments/convergence_report.h"
 #include "experiments/exit_code.h"
 #include "experiments/experiment_file.h"
 #include "experiments/interruption.h"
@@ -21,6 +22,7 @@ namespace {
 constexpr const char* examples = R"(Examples:
   plumbline run experiments/one_vs_two_layers.toml
   plumbline run experiments/one_vs_two_layers.toml --quick          a look at it within a minute
+  plumbline run experiments/convergence.toml                     how fast the truth comes: a figure
   plumbline run mine.toml --output out/mine --scenes-dir ~/scenes
 Exits with 1 where cells failed (they are listed), with 130 where it was interrupted.)";
 
@@ -39,19 +41,42 @@ std::filesystem::path default_cache() {
     return "cache";
 }
 
-int run(const Options& options, const CommonOptions& common) {
-    Experiment experiment = load_experiment(options.experiment);
-    if (options.quick) make_quick(experiment);
-    RunOptions run_options = options.run;
-    if (run_options.output.empty()) run_options.output = std::filesystem::path("out") / experiment.name;
-    require_writable_folder(run_options.output);
-    run_options.write_frames = !options.no_frames;
-    run_options.stop = &interruption_flag();
-    run_options.command =
-        fmt::format("plumbline run {}{}", options.experiment.string(), options.quick ? " --quick" : "");
+void print_question(const std::string& title, const std::string& question) {
+    fmt::print("{}\n", title);
+    if (!question.empty()) fmt::print("{}\n", question);
+}
 
-    fmt::print("{}\n", experiment.title);
-    if (!experiment.question.empty()) fmt::print("{}\n", experiment.question);
+// What both kinds of experiment share.
+RunOptions run_options_of(const Options& options, const std::string& name) {
+    RunOptions run = options.run;
+    if (run.output.empty()) run.output = std::filesystem::path("out") / name;
+    run.write_frames = !options.no_frames;
+    run.stop = &interruption_flag();
+    run.command = fmt::format("plumbline run {}{}", options.experiment.string(), options.quick ? " --quick" : "");
+    require_writable_folder(run.output);
+    return run;
+}
+
+int run_convergence(const Options& options, const CommonOptions& common, ConvergenceExperiment experiment) {
+    if (options.quick) make_quick(experiment);
+    const RunOptions run_options = run_options_of(options, experiment.name);
+    print_question(experiment.title, experiment.question);
+    const ConvergenceResults results = run_convergence(experiment, SceneFinder(common.scenes_dirs), run_options);
+    if (results.interrupted) {
+        fmt::print("\nInterrupted: nothing was written; the same command finds the references that were finished.\n");
+        return exit_interrupted;
+    }
+    write_convergence_files(results, run_options.output);
+    fmt::print("\n{}\n{:.0f} s on {}\n", print_convergence_table(results), results.seconds, results.system.cpu);
+    for (const char* file : {"convergence.csv", "convergence.json", "convergence.svg", "index.html"})
+        fmt::print("{}\n", (run_options.output / file).string());
+    return exit_fine;
+}
+
+int run_comparison(const Options& options, const CommonOptions& common, Experiment experiment) {
+    if (options.quick) make_quick(experiment);
+    const RunOptions run_options = run_options_of(options, experiment.name);
+    print_question(experiment.title, experiment.question);
     const RunResults results = run_experiment(experiment, SceneFinder(common.scenes_dirs), run_options);
 
     fmt::print("\n{}\n", print_results_table(results.rows));
@@ -71,6 +96,13 @@ int run(const Options& options, const CommonOptions& common) {
         return exit_interrupted;
     }
     return results.failures.empty() ? exit_fine : exit_failed;
+}
+
+int run(const Options& options, const CommonOptions& common) {
+    const ConfigValue table = read_config(options.experiment);
+    return kind_of(table, options.experiment) == ExperimentKind::convergence
+               ? run_convergence(options, common, parse_convergence(table, options.experiment))
+               : run_comparison(options, common, parse_experiment(table, options.experiment));
 }
 
 }  // namespace

@@ -81,8 +81,17 @@ MethodList read_methods(ConfigReader& reader) {
 
 }  // namespace
 
+ExperimentKind kind_of(const ConfigValue& table, const std::filesystem::path& file) {
+    ConfigReader reader(table, file.string());
+    const std::string kind = reader.text("kind", "comparison");
+    if (kind == "comparison") return ExperimentKind::comparison;
+    if (kind == "convergence") return ExperimentKind::convergence;
+    reader.fail("kind", fmt::format("no kind '{}'{}", kind, name_hint(kind, {"comparison", "convergence"})));
+}
+
 Experiment parse_experiment(const ConfigValue& table, const std::filesystem::path& file) {
     ConfigReader reader(table, file.string());
+    reader.text("kind", "comparison");
     Experiment experiment;
     experiment.file = file;
     experiment.name = reader.text("name", file.stem().string());

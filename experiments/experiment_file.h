@@ -52,6 +52,14 @@ struct Experiment {
     std::string baseline;  // the method that others are set against in the summary; the first by default
 };
 
+enum class ExperimentKind {
+    comparison,   // methods against the truth: Experiment
+    convergence,  // the path tracer against itself: ConvergenceExperiment
+};
+
+// What the key `kind` says; comparison where it is missing. Throws ConfigError.
+ExperimentKind kind_of(const ConfigValue& table, const std::filesystem::path& file);
+
 // Throws ConfigError with file and line.
 Experiment parse_experiment(const ConfigValue& table, const std::filesystem::path& file);
 Experiment load_experiment(const std::filesystem::path& file);

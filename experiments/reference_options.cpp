@@ -104,7 +104,8 @@ void ReferenceOptions::add_to(CLI::App& command) {
         ->description(
             "Planes to render, separated by commas: ao, direct, indirect, indirect.K, irradiance, reflection, "
             "emission, "
-            "total, and depth, normal, albedo, position, motion, instance, also as layer2.depth and so on");
+            "total, and depth, normal, albedo, position, motion, seen_before, instance, also as layer2.depth and so "
+            "on");
 
     std::string group = "Samples";
     CLI::Option* samples = command

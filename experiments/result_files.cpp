@@ -89,6 +89,10 @@ Json experiment_json(const Experiment& experiment) {
     return json;
 }
 
+std::string csv_number(double value) { return std::isnan(value) ? "" : fmt::format("{:.9g}", value); }
+
+}  // namespace
+
 std::string csv_text(const std::string& text) {
     if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
     std::string quoted = "\"";
@@ -96,10 +100,6 @@ std::string csv_text(const std::string& text) {
     quoted.push_back('"');
     return quoted;
 }
-
-std::string csv_number(double value) { return std::isnan(value) ? "" : fmt::format("{:.9g}", value); }
-
-}  // namespace
 
 std::string print_csv(const RunResults& results) {
     std::string text = "scene,view,plane,truth,method,path_tracer_samples,measured,reference_samples";

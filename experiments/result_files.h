@@ -17,4 +17,7 @@ std::string print_json(const RunResults& results);
 // Writes results.csv, results.json and index.html (page.h) into `folder`, each whole or not at all.
 void write_result_files(const RunResults& results, const std::filesystem::path& folder);
 
+// A cell of a CSV file, quoted where it has to be.
+std::string csv_text(const std::string& text);
+
 }  // namespace plumb

@@ -34,20 +34,47 @@ RatioSummary summarise_ratios(const std::vector<double>& ratios) {
     RatioSummary summary;
     summary.count = static_cast<int>(ratios.size());
     if (ratios.empty()) return summary;
+    std::vector<double> logarithms;
+    for (const double ratio : ratios) {
+        logarithms.push_back(std::log(ratio));
+        summary.below_one += ratio < 1.0 ? 1 : 0;
+    }
+    const MeanSummary mean = summarise_mean(logarithms);
+    summary.mean = std::exp(mean.mean);
+    summary.lower = std::exp(mean.lower), summary.upper = std::exp(mean.upper);
+    return summary;
+}
+
+MeanSummary summarise_mean(const std::vector<double>& values) {
+    MeanSummary summary;
+    summary.count = static_cast<int>(values.size());
+    if (values.empty()) return summary;
     double sum = 0.0;
-    for (const double ratio : ratios) sum += std::log(ratio), summary.below_one += ratio < 1.0 ? 1 : 0;
-    const double mean = sum / summary.count;
-    summary.mean = std::exp(mean);
+    for (const double value : values) sum += value;
+    summary.mean = sum / summary.count;
     if (summary.count == 1) {
-        summary.lower = 0.0, summary.upper = std::numeric_limits<double>::infinity();
+        summary.standard_error = std::numeric_limits<double>::infinity();
+        summary.lower = -std::numeric_limits<double>::infinity();
+        summary.upper = std::numeric_limits<double>::infinity();
         return summary;
     }
     double squares = 0.0;
-    for (const double ratio : ratios) squares += (std::log(ratio) - mean) * (std::log(ratio) - mean);
-    const double error = std::sqrt(squares / (summary.count - 1) / summary.count);
-    const double half_width = student_t(summary.count - 1) * error;
-    summary.lower = std::exp(mean - half_width), summary.upper = std::exp(mean + half_width);
+    for (const double value : values) squares += (value - summary.mean) * (value - summary.mean);
+    summary.standard_error = std::sqrt(squares / (summary.count - 1) / summary.count);
+    const double half_width = student_t(summary.count - 1) * summary.standard_error;
+    summary.lower = summary.mean - half_width, summary.upper = summary.mean + half_width;
     return summary;
+}
+
+LineFit fit_line(const std::vector<double>& x, const std::vector<double>& y) {
+    const double mean_x = summarise_mean(x).mean, mean_y = summarise_mean(y).mean;
+    double covariance = 0.0, variance = 0.0;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        covariance += (x[i] - mean_x) * (y[i] - mean_y);
+        variance += (x[i] - mean_x) * (x[i] - mean_x);
+    }
+    const double slope = covariance / variance;
+    return {slope, mean_y - slope * mean_x};
 }
 
 }  // namespace plumb

@@ -1,4 +1,4 @@
-// Small samples: quartiles, and the mean of ratios with its interval.
+// Small samples: quartiles, means and means of ratios with their intervals, and fitted lines.
 #pragma once
 
 #include <vector>
@@ -17,5 +17,21 @@ struct RatioSummary {
 
 // Student's t interval of the mean logarithm: ratios multiply, so their logarithms average. All must be positive.
 RatioSummary summarise_ratios(const std::vector<double>& ratios);
+
+struct MeanSummary {
+    double mean = 0.0;
+    double standard_error = 0.0;
+    double lower = 0.0, upper = 0.0;  // Student's 95 % interval; infinite to both sides for a single value
+    int count = 0;
+};
+
+MeanSummary summarise_mean(const std::vector<double>& values);
+
+// y = intercept + slope * x by least squares. There must be two different x at least.
+struct LineFit {
+    double slope = 0.0, intercept = 0.0;
+};
+
+LineFit fit_line(const std::vector<double>& x, const std::vector<double>& y);
 
 }  // namespace plumb
