@@ -214,8 +214,10 @@ void PathIntegrator::pass_panes(const VertexBatch& vertices, int vertex, Start s
             if (!point.specular.is_transparent()) break;
             const glm::vec3 specular = scene_.specular_albedo(point.specular, point.shading_normal, -direction);
             const glm::vec3 passing = point.specular.transmission * (1.0f - specular);
-            const float share =
-                largest(passing) / (largest(passing) + largest(point.albedo * (1.0f - specular) + specular));
+            // Paths have to end at a pane that glows, or none would find its light.
+            const float glowing = point.emission != glm::vec3(0.0f) ? largest(passing) : 0.0f;
+            const float ending = std::max(glowing, largest(point.albedo * (1.0f - specular) + specular));
+            const float share = largest(passing) / (largest(passing) + ending);
             const std::uint32_t use = dimension(vertex, start == Start::specular, pane_pick) + pane * panes_apart;
             const glm::vec3 weight = scattered.weight.get(i);
             if (sobol_point(index, mix_word(use)).x >= share) {
