@@ -225,8 +225,9 @@ void PathIntegrator::pass_panes(const VertexBatch& vertices, int vertex, Start s
                 break;
             }
             scattered.weight.set(i, weight * passing / share);
-            hits[i] = scene_.intersect(origin, direction, std::nextafter(hits[i].distance, infinite_distance),
-                                       scattered.rays.farthest[i], RayCoherence::incoherent, scattered.rays.time[i]);
+            hits[i] =
+                scene_.intersect(origin, direction, std::nextafter(hits[i].distance, infinite_distance),
+                                 scattered.rays.farthest[i], RayCoherence::incoherent, scattered.rays.time[i], layers_);
             ++rays;
         }
     }

@@ -152,9 +152,10 @@ SurfaceHit TracedScene::intersect(EmbreeQuery& query, RTCScene scene, const glm:
 }
 
 SurfaceHit TracedScene::intersect(const glm::vec3& origin, const glm::vec3& direction, float nearest, float farthest,
-                                  RayCoherence coherence, float time) const {
-    EmbreeQuery query(coherence);
-    return intersect(query, embree_scene_, origin, direction, nearest, farthest, time);
+                                  RayCoherence coherence, float time, const OracleLayers* layers) const {
+    EmbreeQuery query(coherence, layers ? &TracedScene::reject_what_layers_lack : nullptr, layers);
+    const RTCScene scene = layers ? scene_for_layers() : embree_scene_;
+    return intersect(query, scene, origin, direction, nearest, farthest, time);
 }
 
 void TracedScene::intersect(const RayBatch& rays, HitBatch& hits, RayCoherence coherence,

@@ -38,12 +38,13 @@ public:
     bool anything_moves() const { return anything_moves_; }
     bool moves(std::uint32_t instance) const { return parts_[instance].steps > 1; }
 
-    // The nearest hit with nearest <= distance <= farthest, in units of the direction's length.
+    // The nearest hit with nearest <= distance <= farthest, in units of the direction's length. Where `layers` is
+    // given, here and below, only what they contain is met.
     SurfaceHit intersect(const glm::vec3& origin, const glm::vec3& direction, float nearest = positive_distance,
                          float farthest = infinite_distance, RayCoherence coherence = RayCoherence::incoherent,
-                         float time = now) const;
+                         float time = now, const OracleLayers* layers = nullptr) const;
 
-    // Many rays at once. Where `layers` is given, only what they contain is met.
+    // Many rays at once.
     void intersect(const RayBatch& rays, HitBatch& hits, RayCoherence coherence = RayCoherence::incoherent,
                    const OracleLayers* layers = nullptr) const;
     // Sets blocked[i] to whether anything lies between 0 and the ray's farthest point.
