@@ -80,7 +80,7 @@ TEST_P(Shards, ThreeUnevenShardsMergeToTheBitsOfOneRun) {
         run(planes + Arguments{"--merge", file("cornell_front.20-34.shard"), file("cornell_front.0-2.shard"),
                                file("cornell_front.2-20.shard")});
     EXPECT_EQ(merged.exit_code, 0) << merged.output;
-    EXPECT_THAT(merged.output, HasSubstr("34 samples per pixel of 3 shards"));
+    EXPECT_THAT(merged.output, AllOf(HasSubstr("34 samples per pixel of 3 shards"), HasSubstr("standard error: ao ")));
     expect_same_bits(one, frame());
     EXPECT_EQ(frame().facts.at("samples"), "34");
     const auto files = std::filesystem::directory_iterator(folder_.path);
