@@ -53,7 +53,7 @@ std::vector<TableLine> table_lines(const ConvergenceResults& results) {
             line.samples = fmt::format("{}", last);
             line.last_random = rmse_text(random.rmse(last)), line.last_sobol = rmse_text(sobol.rmse(last));
             // Random points' squared error falls with 1 / samples.
-            line.gain = fmt::format("{:.2g}", std::pow(random.rmse(last) / sobol.rmse(last), 2.0));
+            line.gain = fmt::format("{:.3g}", std::pow(random.rmse(last) / sobol.rmse(last), 2.0));
         }
         lines.push_back(line);
     }

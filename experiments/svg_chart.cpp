@@ -13,7 +13,7 @@ namespace {
 
 // Pixels.
 constexpr double panel_width = 330.0, panel_height = 270.0;
-constexpr double left = 58.0, right = 14.0, top = 30.0, bottom = 46.0;
+constexpr double left = 64.0, right = 14.0, top = 30.0, bottom = 46.0;
 constexpr double head = 40.0, foot = 28.0;
 constexpr const char *ink = "#222222", *faint = "#dddddd";
 
@@ -84,8 +84,8 @@ std::string draw_axes(const Chart& chart, const Axis& x, const Axis& y) {
     const double middle_x = 0.5 * (x.from + x.to), middle_y = 0.5 * (y.from + y.to);
     svg += text(middle_x, y.to - 9.0, "middle", chart.title, "font-weight=\"bold\"");
     svg += text(middle_x, y.from + 32.0, "middle", chart.x_label);
-    svg += text(x.from - 44.0, middle_y, "middle", chart.y_label,
-                fmt::format("transform=\"rotate(-90 {:.1f} {:.1f})\"", x.from - 44.0, middle_y));
+    svg += text(x.from - 51.0, middle_y, "middle", chart.y_label,
+                fmt::format("transform=\"rotate(-90 {:.1f} {:.1f})\"", x.from - 51.0, middle_y));
     return svg;
 }
 

@@ -111,8 +111,8 @@ TEST(SvgChart, DrawsPointsWhereTheyBelongAndEscapesText) {
     std::size_t circles = 0;
     for (auto at = svg.find("<circle"); at != std::string::npos; at = svg.find("<circle", at + 1)) ++circles;
     EXPECT_EQ(circles, 3u);
-    // On both axes the points lie 4 % of the range from the ends: from 58 to 316 across, from 264 up to 70.
-    EXPECT_THAT(svg, HasSubstr("<path d=\"M67.6 256.8 L306.4 77.2\""));
+    // On both axes the points lie 4 % of the range from the ends: from 64 to 316 across, from 264 up to 70.
+    EXPECT_THAT(svg, HasSubstr("<path d=\"M73.3 256.8 L306.7 77.2\""));
 }
 
 TEST(SvgChart, AChartWithoutPointsIsStillAChart) {
