@@ -23,12 +23,15 @@ const std::vector<std::string> comparable_planes = {
 Quantities read_quantities(ConfigReader& reader) {
     Quantities quantities;
     quantities.bounces = reader.integer("bounces", quantities.bounces, 1, 64);
-    try {
-        quantities.ao_falloff =
-            falloff_from_string(reader.text("ao_falloff", std::string(to_string(quantities.ao_falloff))));
-    } catch (const ImageError& error) {
-        reader.fail("ao_falloff", error.what());
-    }
+    const auto read_falloff = [&reader](const char* key, Falloff& falloff) {
+        try {
+            falloff = falloff_from_string(reader.text(key, std::string(to_string(falloff))));
+        } catch (const ImageError& error) {
+            reader.fail(key, error.what());
+        }
+    };
+    read_falloff("ao_falloff", quantities.ao_falloff);
+    read_falloff("indirect_falloff", quantities.indirect_falloff);
     return quantities;
 }
 

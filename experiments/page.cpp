@@ -126,6 +126,7 @@ Json provenance_json(const RunResults& results) {
             {"scenes", fmt::format("{}", fmt::join(scenes, "; "))},
             {"diffuse_bounces", experiment.quantities.bounces},
             {"ao_falloff", to_string(experiment.quantities.ao_falloff)},
+            {"indirect_falloff", to_string(experiment.quantities.indirect_falloff)},
             {"truth", fmt::format("up to {} samples per pixel, target error {}, seed {}", experiment.reference.samples,
                                   experiment.reference.target_error, experiment.reference.seed)},
             {"OpenGL", fmt::format("{}, {}, {} ({})", results.gl_backend, results.gl_renderer, results.gl_version,

@@ -106,9 +106,9 @@ std::string reference_key(const Scene& scene, const View& view, const ReferenceS
     std::string key = fmt::format("format {}; integrator {}; scene {:016x}; time {:a} to {:a}; {}; previous {}",
                                   file_format, build_facts().integrator_hash, scene.content_hash(), span.begin,
                                   span.end, view_key(view), view_key(settings.previous_view));
-    key += fmt::format("; planes {}; ao_radius {:a}; ao_falloff {}; bounces {}; indirect_radius {:a}",
+    key += fmt::format("; planes {}; ao_radius {:a}; ao_falloff {}; bounces {}; indirect_radius {:a} {}",
                        fmt::join(planes, ","), quantities.ao_radius, to_string(quantities.ao_falloff),
-                       quantities.bounces, quantities.indirect_radius);
+                       quantities.bounces, quantities.indirect_radius, to_string(quantities.indirect_falloff));
     key += fmt::format("; samples {} to {}; target_error {:a}; seed {}; minimum_separation {:a}; antialias {}",
                        settings.first_sample, settings.samples, settings.target_error, settings.seed,
                        settings.minimum_separation, settings.antialias);

@@ -67,6 +67,7 @@ Json experiment_json(const Experiment& experiment) {
     json["resolution"] = {experiment.width, experiment.height};
     json["bounces"] = experiment.quantities.bounces;
     json["ao_falloff"] = to_string(experiment.quantities.ao_falloff);
+    json["indirect_falloff"] = to_string(experiment.quantities.indirect_falloff);
     json["reference"] = {{"samples", experiment.reference.samples},
                          {"target_error", experiment.reference.target_error},
                          {"seed", experiment.reference.seed},

@@ -57,12 +57,17 @@ void ViewOptions::add_to(CLI::App& command, const std::vector<std::string>& defa
                     "Only light from within so many metres is indirect; inf: all")
         ->check(CLI::PositiveNumber)
         ->group(group);
+    command.add_option("--indirect-falloff", indirect_falloff, "How light within that radius counts over its distance")
+        ->check(CLI::IsMember({"hard", "quadratic", "cubic"}))
+        ->capture_default_str()
+        ->group(group);
 }
 
 Quantities ViewOptions::read_quantities() const {
     Quantities result = quantities;
     result.planes = planes;
     result.ao_falloff = falloff_from_string(ao_falloff);
+    result.indirect_falloff = falloff_from_string(indirect_falloff);
     return result;
 }
 

@@ -22,6 +22,7 @@ struct ViewOptions {
     std::vector<std::string> planes;
     Quantities quantities;
     std::string ao_falloff = "quadratic";
+    std::string indirect_falloff = "hard";
     std::filesystem::path output = "out";
 
     void add_to(CLI::App& command, const std::vector<std::string>& default_planes);

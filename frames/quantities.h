@@ -9,7 +9,8 @@
 
 namespace plumb {
 
-// How an occluder at distance d counts towards ambient visibility within radius r; zero from r on.
+// How what lies at distance d counts within radius r: occluders towards ambient visibility, senders towards indirect
+// light. Zero from r on.
 enum class Falloff {
     hard,       // 1
     quadratic,  // 1 - d^2/r^2
@@ -45,6 +46,7 @@ struct Quantities {
     // Metres: light that arrives at a shaded point from farther away than this does not count as indirect. Infinity:
     // all (what a user wants); the method's radius: what the method tried.
     float indirect_radius = std::numeric_limits<float>::infinity();
+    Falloff indirect_falloff = Falloff::hard;  // how light counts that arrives from a distance within that radius
 
     bool wants(std::string_view plane) const;
     // True where any wanted plane is `prefix` itself or begins with `prefix` and a dot.

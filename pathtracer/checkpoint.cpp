@@ -74,6 +74,7 @@ CheckpointKey CheckpointKey::of(const Scene& scene, const TimeSpan& span, const 
     for (const std::string& plane : quantities.planes) bytes += plane + '\n';
     append(bytes, quantities.ao_radius), append(bytes, quantities.ao_falloff);
     append(bytes, quantities.bounces), append(bytes, quantities.indirect_radius);
+    append(bytes, quantities.indirect_falloff);
     append(bytes, settings.seed), append(bytes, settings.minimum_separation), append(bytes, settings.antialias);
     append(bytes, settings.emitter_sampling), append(bytes, settings.points), append(bytes, settings.roulette_after);
     if (settings.oracle) {

@@ -267,7 +267,12 @@ void PathIntegrator::arrive(const VertexBatch& from, int vertex, Start start, bo
                                                          scattered.density[i], rays.time[i]);
             add_to(sum, from.path[lane], throughput * emission * weight);
         }
-        if (!goes_on || (limited && hits[i].distance >= plan_.indirect_radius)) continue;
+        if (!goes_on) continue;
+        if (limited) {
+            const float counts = evaluate_falloff(plan_.indirect_falloff, hits[i].distance, plan_.indirect_radius);
+            if (!(counts > 0.0f)) continue;
+            throughput *= counts;
+        }
         const bool plain = scene_.is_plain(hits[i].instance);
         glm::vec3 albedo = points.albedo.get(j);
         if (plain && albedo == glm::vec3(0.0f)) continue;

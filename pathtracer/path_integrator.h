@@ -28,6 +28,7 @@ struct EstimationPlan {
     float ao_radius = 1.0f;
     Falloff ao_falloff = Falloff::quadratic;
     float indirect_radius = infinite_distance;
+    Falloff indirect_falloff = Falloff::hard;
     // Lights without extent reach x without randomness through pixel centres; they are added exactly, once per pixel.
     bool exact_lights_at_first_point = true;
     int roulette_after = 0;  // bounces that every path is given; 0: no roulette

@@ -123,6 +123,7 @@ RenderPlan make_plan(const TracedScene& scene, const View& view, const Reference
     estimation.ao_radius = quantities.ao_radius;
     estimation.ao_falloff = quantities.ao_falloff;
     estimation.indirect_radius = quantities.indirect_radius;
+    estimation.indirect_falloff = quantities.indirect_falloff;
     estimation.roulette_after = settings.roulette_after;
     plan.primary_rays_are_sampled =
         settings.antialias || view.camera().aperture_radius > 0.0f || settings.view_at_shutter_opening.has_value();

@@ -33,7 +33,8 @@ bool is_error_check(int samples) { return samples >= 2 && next_error_check(sampl
 // make of a white surface across the scene.
 double light_level(const Scene& scene) {
     const Bounds bounds = scene.bounds();
-    const double squared_size = std::max(1e-30, std::pow(static_cast<double>(bounds.diagonal()), 2.0));
+    // Without a surface there is nothing for local lights to shine on.
+    const double squared_size = bounds.empty() ? HUGE_VAL : std::pow(static_cast<double>(bounds.diagonal()), 2.0);
     double level = luminance(scene.environment.radiance);
     for (const Material& material : scene.materials)
         level = std::max(level, static_cast<double>(luminance(material.emission)));
@@ -378,6 +379,7 @@ ReferenceResult ReferenceRun::finish(bool complete) {
                           {"ao_radius", fmt::format("{}", quantities.ao_radius)},
                           {"ao_falloff", std::string(to_string(quantities.ao_falloff))},
                           {"indirect_radius", fmt::format("{}", quantities.indirect_radius)},
+                          {"indirect_falloff", std::string(to_string(quantities.indirect_falloff))},
                           {"minimum_separation", fmt::format("{}", settings_.minimum_separation)},
                           {"antialias", settings_.antialias ? "yes" : "no"},
                           {"points", settings_.points == SamplePoints::sobol ? "sobol" : "random"},

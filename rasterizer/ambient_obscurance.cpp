@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "rasterizer/depth_mip_chain.h"
+#include "rasterizer/falloff.h"
 #include "rasterizer/gl_error.h"
 
 namespace plumb {
@@ -55,12 +56,10 @@ ShaderDefines shader_defines(const PassResources& resources) {
     for (const auto estimator : {mara2016, g3d_demo, sao2012, linear}) {
         defines.emplace_back(in_capitals(to_string(estimator)), std::to_string(static_cast<int>(estimator)));
     }
-    for (const Falloff falloff : {Falloff::hard, Falloff::quadratic, Falloff::cubic}) {
-        defines.emplace_back(in_capitals(to_string(falloff)), std::to_string(static_cast<int>(falloff)));
-    }
+    const ShaderDefines of_falloff = falloff_defines(resources.quantities.ao_falloff);
+    defines.insert(defines.end(), of_falloff.begin(), of_falloff.end());
     const int coarsest = coarsest_depth_mip(resources.planes.width(), resources.planes.height());
     const ShaderDefines chosen = {{"ESTIMATOR", in_capitals(to_string(settings.estimator))},
-                                  {"FALLOFF", in_capitals(to_string(resources.quantities.ao_falloff))},
                                   {"LAYERS", std::to_string(settings.layers)},
                                   {"RADIUS", shader_literal(resources.quantities.ao_radius)},
                                   {"BIAS", shader_literal(settings.bias)},

@@ -1,9 +1,10 @@
 // Ambient visibility of each pixel of layer 0; ambient_obscurance.h has the formulas and the names of the estimators.
 //
-// Defines: LAYERS, ESTIMATOR and FALLOFF with the names of their values, RADIUS (metres), BIAS (metres), EPSILON (square
-// metres), INTENSITY, MIP_OFFSET, COARSEST_LEVEL, and those of sample_spiral.glsl.
+// Defines: LAYERS, ESTIMATOR with the names of its values, RADIUS (metres), BIAS (metres), EPSILON (square metres),
+// INTENSITY, MIP_OFFSET, COARSEST_LEVEL, and those of falloff.glsl and sample_spiral.glsl.
 
 #include "depth_mip_chain.glsl"
+#include "falloff.glsl"
 #include "normal_encoding.glsl"
 #include "sample_spiral.glsl"
 
@@ -11,17 +12,6 @@ layout(binding = 0) uniform sampler2DArray depth;  // with its MIP chain where C
 layout(binding = 1) uniform sampler2DArray normal;
 
 layout(location = 0) out float visibility;
-
-float falloff(float relative_square) {
-#if FALLOFF == HARD
-    return relative_square < 1.0 ? 1.0 : 0.0;
-#elif FALLOFF == QUADRATIC
-    return max(0.0, 1.0 - relative_square);
-#elif FALLOFF == CUBIC
-    float quadratic = max(0.0, 1.0 - relative_square);
-    return quadratic * quadratic * quadratic;
-#endif
-}
 
 // Of the point seen through the centre of `pixel` at `tap_depth`. Without a surface the depth is infinite: a point so far
 // away that its falloff is 0 does as well.

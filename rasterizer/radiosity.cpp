@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "rasterizer/depth_mip_chain.h"
+#include "rasterizer/falloff.h"
 #include "rasterizer/gl_error.h"
 
 namespace plumb {
@@ -63,6 +64,8 @@ ShaderDefines shader_defines(const PassResources& resources) {
         {"FINEST_LEVEL", std::to_string(std::min(settings.minimum_mip_level, coarsest))},
         {"COARSEST_LEVEL", std::to_string(coarsest)}};
     defines.insert(defines.end(), chosen.begin(), chosen.end());
+    const ShaderDefines of_falloff = falloff_defines(resources.quantities.indirect_falloff);
+    defines.insert(defines.end(), of_falloff.begin(), of_falloff.end());
     return defines;
 }
 

@@ -1,9 +1,10 @@
 // One bounce of diffuse light from the visible layers; radiosity.h has the formulas.
 //
 // Defines: LAYERS, TEST_TAP_NORMAL (0, 1), NORMALISATION with the names of its values, RADIUS (metres), MIP_OFFSET,
-// FINEST_LEVEL, COARSEST_LEVEL, and those of sample_spiral.glsl.
+// FINEST_LEVEL, COARSEST_LEVEL, and those of falloff.glsl and sample_spiral.glsl.
 
 #include "depth_mip_chain.glsl"
+#include "falloff.glsl"
 #include "normal_encoding.glsl"
 #include "sample_spiral.glsl"
 
@@ -36,7 +37,7 @@ vec4 received(Tap tap, int layer, vec3 centre, vec3 camera_normal) {
     hit = hit && near;
 #endif
     vec3 light = texelFetch(radiance, ivec3(tap.source, layer), 0).rgb;
-    return hit ? vec4(near ? cosine * light : vec3(0.0), 1.0) : vec4(0.0);
+    return hit ? vec4(near ? cosine * falloff(square * (1.0 / (RADIUS * RADIUS))) * light : vec3(0.0), 1.0) : vec4(0.0);
 }
 
 void main() {

@@ -2,9 +2,10 @@
 //
 // Gathers, per pixel, the irradiance E at X from the light that the visible layers reflect: N taps on a spiral in
 // screen space (sample_spiral.h). With Y a tap's point, w the unit vector from X to Y, n_X and n_Y the normals and B
-// the reflected diffuse radiance at Y (the plane `direct` of its layer):
+// the reflected diffuse radiance at Y (the plane `direct` of its layer), and g the falloff of the distance of X and Y
+// within `radius` (Quantities::indirect_falloff; hard: 1):
 //
-//     E = 2 pi / M  sum B max(0, w.n_X)        M: the taps that hit (or N, RadiosityNormalisation::samples)
+//     E = 2 pi / M  sum B g max(0, w.n_X)      M: the taps that hit (or N, RadiosityNormalisation::samples)
 //     confidence = M / N
 //
 // A tap hits where w.n_X > 0 and, if test_tap_normal is set, -w.n_Y > 0.01. A hit farther away than `radius` sends

@@ -14,12 +14,6 @@ struct Visibility {
     bool ambiguous = false;
 };
 
-inline double falloff_of_square(Falloff falloff, double relative_square) {
-    if (relative_square >= 1.0) return 0.0;
-    const double quadratic = 1.0 - relative_square;
-    return falloff == Falloff::hard ? 1.0 : falloff == Falloff::quadratic ? quadratic : std::pow(quadratic, 3.0);
-}
-
 inline Visibility ambient_visibility(const Layers& layers, const AmbientObscuranceSettings& settings,
                                      const Quantities& quantities, Pixel pixel) {
     using Estimator = AmbientObscuranceEstimator;

@@ -19,7 +19,8 @@ inline std::uint32_t radiosity_jitter(Pixel pixel) {
     return 6554u + static_cast<std::uint32_t>(static_cast<std::uint64_t>(h >> 16) * 52428u / 65536u);  // 0.1 to 0.9
 }
 
-inline Irradiance gathered_irradiance(const Layers& layers, const RadiositySettings& settings, Pixel pixel) {
+inline Irradiance gathered_irradiance(const Layers& layers, const RadiositySettings& settings, Falloff falloff,
+                                      Pixel pixel) {
     Irradiance result;
     const double depth = depth_at(layers, 0, pixel);
     if (depth == 0.0) return result;
@@ -58,8 +59,9 @@ inline Irradiance gathered_irradiance(const Layers& layers, const RadiositySetti
                                 (settings.test_tap_normal && std::abs(tap_cosine - 0.01) < 1e-5 && may_lie_before);
             if (cosine <= 0.0 || (settings.test_tap_normal ? tap_cosine <= 0.01 : !near)) continue;
             hit = true;
-            const glm::dvec3 light =
-                near ? cosine * vector_at(layers, layers.radiance[layer], tap.source) : glm::dvec3(0.0);
+            const glm::dvec3 light = near ? cosine * falloff_of_square(falloff, relative_square) *
+                                                vector_at(layers, layers.radiance[layer], tap.source)
+                                          : glm::dvec3(0.0);
             if (glm::dot(light, light) > glm::dot(best, best)) best = light;
         }
         sum += best;

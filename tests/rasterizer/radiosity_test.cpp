@@ -27,12 +27,13 @@ const Quantities all_planes = {.planes = {"irradiance", "confidence", "indirect"
 
 // Compares images and counterpart pixel by pixel; returns the share of pixels that rounding leaves open.
 double expect_agreement(const counterpart::Layers& layers, const RadiositySettings& settings, const Image& irradiance,
-                        const Image& confidence) {
+                        const Image& confidence, Falloff falloff = Falloff::hard) {
     const int width = layers.width(), height = layers.height();
     int ambiguous = 0, wrong = 0;
     for (int y = 0; y < height; ++y) {
         for (int x = 0; x < width; ++x) {
-            const counterpart::Irradiance expected = counterpart::gathered_irradiance(layers, settings, {x, y});
+            const counterpart::Irradiance expected =
+                counterpart::gathered_irradiance(layers, settings, falloff, {x, y});
             ambiguous += expected.ambiguous;
             if (expected.ambiguous) continue;
             const int row = height - 1 - y;
@@ -81,6 +82,18 @@ TEST_P(RadiosityTest, AgreesWithItsCounterpartOnNoise) {
     for (const Case& c : cases) {
         SCOPED_TRACE(c.name);
         EXPECT_LT(expect_agreement(context(), noise, c.settings), 0.05);
+    }
+}
+
+TEST_P(RadiosityTest, LightCountsByTheFalloffOfItsDistance) {
+    const counterpart::Layers noise = counterpart::random_layers(slanted_view(97, 66), 4);
+    for (const Falloff falloff : {Falloff::quadratic, Falloff::cubic}) {
+        SCOPED_TRACE(to_string(falloff));
+        Quantities quantities = all_planes;
+        quantities.indirect_falloff = falloff;
+        ScreenSpaceRun run(context(), noise, unblurred({}), quantities);
+        const Image irradiance = run.render("irradiance", 3), confidence = run.render("confidence", 1);
+        EXPECT_LT(expect_agreement(run.layers(), {}, irradiance, confidence, falloff), 0.05);
     }
 }
 

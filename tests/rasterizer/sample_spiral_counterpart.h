@@ -141,4 +141,10 @@ inline Layers random_layers(const View& view, unsigned seed) {
     return layers;
 }
 
+inline double falloff_of_square(Falloff falloff, double relative_square) {
+    if (relative_square >= 1.0) return 0.0;
+    const double quadratic = 1.0 - relative_square;
+    return falloff == Falloff::hard ? 1.0 : falloff == Falloff::quadratic ? quadratic : std::pow(quadratic, 3.0);
+}
+
 }  // namespace plumb::counterpart
