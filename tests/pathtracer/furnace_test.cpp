@@ -49,6 +49,29 @@ TEST_P(Furnace, EveryBounceHoldsItsTermOfTheGeometricSeries) {
 
 INSTANTIATE_TEST_SUITE_P(Albedos, Furnace, testing::Values(0.0f, 0.5f, 0.9f, 0.99f));
 
+// With every wall's light the same, what a radius and a falloff leave of the indirect light is what they take of the
+// openness: indirect.1 = albedo^2 Le (1 - ao). Both look along the same rays, so that there is no noise between them.
+TEST(FurnaceByDirections, IndirectLightCountsByDistanceAsOccludersDo) {
+    const float albedo = 0.5f;
+    const Scene scene = furnace(albedo, 1.0f, glm::mat4(1.0f));
+    const PathTracer tracer(scene);
+    for (const Falloff falloff : {Falloff::hard, Falloff::quadratic, Falloff::cubic}) {
+        for (const float radius : {0.7f, 1.5f, 10.0f}) {
+            auto settings = settings_for({"ao", "indirect.1"}, 16);
+            settings.emitter_sampling = EmitterSampling::directions;
+            settings.quantities.ao_radius = settings.quantities.indirect_radius = radius;
+            settings.quantities.ao_falloff = settings.quantities.indirect_falloff = falloff;
+            const Frame frame = tracer.render(view_of({0, 0, 0}, {0.4f, -1, 0.3f}, 1.5f), settings).frame;
+            for (int x = 0; x < frame.width(); ++x) {
+                // 1e-6: a few roundings of float32 products.
+                EXPECT_NEAR(frame.plane("indirect.1").at(x, 7, 1),
+                            albedo * albedo * (1.0f - frame.plane("ao").at(x, 7)), 1e-6f)
+                    << to_string(falloff) << " within " << radius;
+            }
+        }
+    }
+}
+
 // Following rays to the walls, every ray finds the same radiance: there is nothing random left.
 TEST(FurnaceByDirections, IsFreeOfNoise) {
     const Scene scene = furnace(0.5f, 1.0f, glm::mat4(1.0f));
