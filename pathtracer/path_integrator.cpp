@@ -357,7 +357,7 @@ void PathIntegrator::follow(const VertexBatch& starts, Start start, PathWorkspac
             return;
         }
         HitBatch& hits = workspace.hits;
-        scene_.intersect(rays, hits, RayCoherence::incoherent, layers_);
+        scene_.intersect(rays, hits, layers_);
         if (tests_visibility) {
             for (int i = 0; i < rays.count; ++i) {
                 if (hits[i].missed()) continue;

@@ -177,7 +177,7 @@ Ray ReferenceRun::primary_ray(int x, int y, const SampleSequence& sequence, floa
 void ReferenceRun::add_spread_samples(Scratch& scratch) {
     HitBatch hits;
     const RayBatch& rays = scratch.primary;
-    scene_.intersect(rays, hits, RayCoherence::coherent);
+    scene_.intersect(rays, hits);
     scratch.rays += static_cast<std::uint64_t>(rays.count);
     for (int i = 0; i < rays.count; ++i) {
         const glm::vec3 direction = rays.direction.get(i);

@@ -158,10 +158,11 @@ SurfaceHit TracedScene::intersect(const glm::vec3& origin, const glm::vec3& dire
     return intersect(query, scene, origin, direction, nearest, farthest, time);
 }
 
-void TracedScene::intersect(const RayBatch& rays, HitBatch& hits, RayCoherence coherence,
-                            const OracleLayers* layers) const {
+void TracedScene::intersect(const RayBatch& rays, HitBatch& hits, const OracleLayers* layers) const {
     if (recorder_) recorder_->add_nearest(rays);
-    EmbreeQuery query(coherence, layers ? &TracedScene::reject_what_layers_lack : nullptr, layers);
+    // Never as coherent rays: those share a path through the tree, and which of two coincident triangles one meets
+    // depends on the others.
+    EmbreeQuery query(RayCoherence::incoherent, layers ? &TracedScene::reject_what_layers_lack : nullptr, layers);
     const RTCScene scene = layers ? scene_for_layers() : embree_scene_;
     // Eight rays together find the very hits that each finds alone, some tenth sooner (benchmark `packets`).
     constexpr int width = 8;

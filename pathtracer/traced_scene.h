@@ -44,9 +44,8 @@ public:
                          float farthest = infinite_distance, RayCoherence coherence = RayCoherence::incoherent,
                          float time = now, const OracleLayers* layers = nullptr) const;
 
-    // Many rays at once.
-    void intersect(const RayBatch& rays, HitBatch& hits, RayCoherence coherence = RayCoherence::incoherent,
-                   const OracleLayers* layers = nullptr) const;
+    // Many rays at once; each finds the very hit that it finds alone.
+    void intersect(const RayBatch& rays, HitBatch& hits, const OracleLayers* layers = nullptr) const;
     // Sets blocked[i] to whether anything lies between 0 and the ray's farthest point.
     void occluded(const RayBatch& rays, Lanes<int>& blocked, const OracleLayers* layers = nullptr) const;
     // What fraction of light passes: 0 where something opaque is in the way, else the product over the panes.
