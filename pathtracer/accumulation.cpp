@@ -26,16 +26,15 @@ Accumulation::Accumulation(int width, int height, const EstimationPlan& plan, bo
     channels_ = static_cast<std::size_t>(next);
     sums_.resize(channels_ * 2 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
     // 2^-32 of the light level: a sample of a thousandth of it is off by 1e-7 of itself, one as likely up as down. The
-    // ambient visibility, at most 1, is held to the same quantum or to 2^-32.
-    const double level = std::min(light_level > 0.0 ? light_level : 1.0, plan.ao ? 1.0 : HUGE_VAL);
-    quantum_ = std::exp2(std::ceil(std::log2(level)) - 32.0);
+    // ambient visibility, at most 1, has a quantum of its own, however dim the scene.
+    quantum_ = std::exp2(std::ceil(std::log2(light_level > 0.0 ? light_level : 1.0)) - 32.0);
     rounding_ = 0x1.8p52 * quantum_;
 }
 
 void Accumulation::add(const SampleBatch& samples, int count, const BatchEstimate& estimate) {
     if (ao_ >= 0) {
         for (int i = 0; i < count; ++i) {
-            sums(samples.pixel[i], samples.half[i])[ao_] += rounded(estimate.ambient_visibility[i]);
+            sums(samples.pixel[i], samples.half[i])[ao_] += rounded_visibility(estimate.ambient_visibility[i]);
         }
     }
     if (channels_ == (ao_ >= 0 ? 1u : 0u)) return;
@@ -67,8 +66,12 @@ void Accumulation::add(std::span<const double> other) {
 }
 
 bool Accumulation::is_exact() const {
-    const double largest_exact = 0x1p53 * quantum_;
-    return std::ranges::all_of(sums_, [&](double sum) { return sum < largest_exact; });
+    constexpr double largest_count = 0x1p53;  // of quanta
+    for (std::size_t i = 0; i < sums_.size(); ++i) {
+        const bool is_visibility = ao_ >= 0 && i % channels_ == static_cast<std::size_t>(ao_);
+        if (!(sums_[i] < largest_count * (is_visibility ? visibility_quantum : quantum_))) return false;
+    }
+    return true;
 }
 
 Accumulation::Value Accumulation::value(const StochasticPlane& plane, std::size_t pixel, int samples,

@@ -76,6 +76,10 @@ private:
         return &sums_[(2 * pixel + static_cast<std::size_t>(half)) * channels_];
     }
     double rounded(float value) const { return (static_cast<double>(value) + rounding_) - rounding_; }
+    static double rounded_visibility(float value) {
+        constexpr double rounding = 0x1.8p52 * visibility_quantum;
+        return (static_cast<double>(value) + rounding) - rounding;
+    }
     void add_colour(double* sum, const glm::vec3& colour) const {
         sum[0] += rounded(colour.x), sum[1] += rounded(colour.y), sum[2] += rounded(colour.z);
     }
@@ -90,6 +94,7 @@ private:
     // First channel of each; -1: not summed.
     int ao_ = -1, emission_ = -1, direct_ = -1, indirect_ = -1, irradiance_ = -1, reflection_ = -1;
     std::size_t channels_ = 0;
+    static constexpr double visibility_quantum = 0x1p-32;
     double quantum_, rounding_;  // a number so large that its last bit is worth a quantum
     std::vector<double> sums_;
 };

@@ -263,6 +263,16 @@ TEST_P(Splitting, OfPixelsOverThreadsKeepsEveryBit) {
     }
 }
 
+// A dim scene under which ambient visibilities are summed as well: those are far larger than its radiances.
+TEST_P(Splitting, OfADimScenesSamplesIsExact) {
+    Scene scene = everything_at_once();
+    for (Material& material : scene.materials) material.emission *= 1e-7f;
+    scene.point_lights.clear(), scene.directional_lights.clear();
+    scene.environment.radiance *= 1e-7f;
+    const PathTracer tracer(scene, {0.0, 1.0});
+    EXPECT_TRUE(tracer.render(everything_view(GetParam()), everything_settings(GetParam())).exact);
+}
+
 INSTANTIATE_TEST_SUITE_P(All, Splitting, testing::Bool(),
                          [](const auto& test) { return test.param ? "SpreadPrimaryRays" : "PixelCentres"; });
 
