@@ -78,6 +78,7 @@ CLI::Option* add_choice(CLI::App& command, const std::string& name, Value& value
                         const std::map<std::string, Value>& choices, const std::string& standard,
                         const std::string& description) {
     std::vector<std::string> names;
+    names.reserve(choices.size());
     for (const auto& [choice, ignored] : choices) names.push_back(choice);
     return command
         .add_option_function<std::string>(

@@ -165,8 +165,8 @@ std::string print_svg(const std::vector<Chart>& charts, int columns, const std::
         width, height, ink, escape_html(title));
     svg += text(0.5 * width, 25.0, "middle", title, "font-size=\"16\" font-weight=\"bold\"");
     for (std::size_t i = 0; i < charts.size(); ++i) {
-        const auto place = static_cast<int>(i);
-        svg += draw_chart(charts[i], place % columns * panel_width, head + place / columns * panel_height);
+        const int column = static_cast<int>(i) % columns, row = static_cast<int>(i) / columns;
+        svg += draw_chart(charts[i], column * panel_width, head + row * panel_height);
     }
     if (!note.empty()) svg += text(0.5 * width, height - 10.0, "middle", note);
     return svg + "</svg>\n";

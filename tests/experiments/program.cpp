@@ -56,6 +56,7 @@ ProgramRun signal_plumbline(const std::vector<std::string>& arguments, int signa
     std::vector<std::string> texts = {PLUMBLINE_PROGRAM};
     texts.insert(texts.end(), arguments.begin(), arguments.end());
     std::vector<char*> pointers;
+    pointers.reserve(texts.size() + 1);
     for (std::string& text : texts) pointers.push_back(text.data());
     pointers.push_back(nullptr);
 
