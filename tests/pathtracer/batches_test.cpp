@@ -167,8 +167,8 @@ TEST(PacketsAmongCoincidentSurfaces, DoNotDependOnTheirCompany) {
         const float size = 4.0f / static_cast<float>(cells);
         for (const float y : {-1.0f, 1.0f}) {
             for (int i = 0; i < cells * cells; ++i) {
-                const float x = -2.0f + size * static_cast<float>(i % cells),
-                            z = -2.0f + size * static_cast<float>(i / cells);
+                const int column = i % cells, row = i / cells;
+                const float x = -2.0f + size * static_cast<float>(column), z = -2.0f + size * static_cast<float>(row);
                 quads.push_back({{x, y, z + size}, {x + size, y, z + size}, {x + size, y, z}, {x, y, z}});
             }
         }

@@ -36,7 +36,7 @@ void let_move(Scene& scene, double begin, double end, const glm::vec3& translati
 // The times of a pixel's samples are stratified, half by half: of N / 2 samples over a part of the time the number is
 // right to within 2.
 constexpr int samples = 1024;
-constexpr double time_error = 2.0 / (samples / 2) + 1e-6;
+constexpr double time_error = 2.0 / (0.5 * samples) + 1e-6;
 
 // The share of [0, 1] in which lower < position + speed t < upper.
 double share_of_time(double position, double speed, double lower, double upper) {

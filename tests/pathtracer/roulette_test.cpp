@@ -15,7 +15,7 @@ TEST(Roulette, KeepsTheSumOfSixtyFourBounces) {
     const View view = view_of({0.1f, 0.2f, 0.3f}, {1, -0.9f, -0.8f}, 1.0f, 8);
     const double albedo = 0.9f, expected = (1.0 - std::pow(albedo, bounces + 2)) / (1.0 - albedo);
     for (const int after : {0, 1, 8}) {
-        auto settings = settings_for({"total", "indirect.20"}, after == 0 ? 16 : 2048, bounces);
+        auto settings = settings_for({"total", "indirect.20"}, after == 0 ? 16 : 4096, bounces);
         settings.roulette_after = after;
         settings.emitter_sampling = EmitterSampling::directions;  // whatever noise there is, is that of the roulette
         const ReferenceResult result = PathTracer(scene).render(view, settings);
