@@ -19,7 +19,7 @@ namespace plumb {
 namespace {
 
 constexpr std::array<char, 8> magic = {'P', 'L', 'U', 'M', 'B', 'R', 'E', 'F'};
-constexpr std::uint32_t format_version = 2;
+constexpr std::uint32_t format_version = 3;  // also of the samples that the sums are made of
 
 // As it lies in the file; the sums follow, then the checksum of all before it. Little-endian, as all machines we build
 // on.

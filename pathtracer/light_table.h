@@ -59,7 +59,9 @@ public:
     bool rays_find_triangles() const { return rays_find_triangles_; }
     bool has_background() const { return !suns_.empty() || !scene_.scene().environment.is_black(); }
 
-    // Of all lights with an extent, for each vertex.
+    // Of all lights with an extent.
+    LightSample sample_extended(const LightReceiver& receiver, float pick, glm::vec2 u) const;
+    // The same for each vertex.
     void sample_extended(const VertexBatch& receivers, const Lanes<float>& pick, const Lanes<float>& x,
                          const Lanes<float>& y, LightLanes& samples) const;
 
@@ -91,7 +93,6 @@ private:
         float height, density, probability = 0.0f;
     };
 
-    LightSample sample_extended(const LightReceiver& receiver, float pick, glm::vec2 u) const;
     void find_emitters(std::vector<double>& powers);
     void find_suns(std::vector<double>& powers);
     Emitter moved(const Emitter& emitter, float time) const;
