@@ -46,10 +46,11 @@ void Accumulation::add(const SampleBatch& samples, int count, const BatchEstimat
         if (direct_ >= 0) add_colour(sum + direct_, albedo * estimate.radiance[0].get(i));
         if (indirect_ < 0) continue;
         glm::vec3 incoming(0.0f);
-        for (int k = 1; k <= bounces_; ++k) {
+        double* bounce_sum = sum + indirect_;
+        for (int k = 1; k <= bounces_; ++k, bounce_sum += 3) {
             const glm::vec3 radiance = estimate.radiance[k].get(i);
             incoming += radiance;
-            add_colour(sum + indirect_ + 3 * (k - 1), albedo * radiance);
+            add_colour(bounce_sum, albedo * radiance);
         }
         if (irradiance_ >= 0) add_colour(sum + irradiance_, glm::pi<float>() * incoming);
     }

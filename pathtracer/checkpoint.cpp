@@ -1,5 +1,6 @@
 #include "pathtracer/checkpoint.h"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdio>
@@ -8,6 +9,7 @@
 #include <memory>
 #include <string>
 #include <type_traits>
+#include <vector>
 
 #include <fmt/format.h>
 #include <xxhash.h>
@@ -71,7 +73,10 @@ CheckpointKey CheckpointKey::of(const Scene& scene, const TimeSpan& span, const 
     bytes.clear();
     append(bytes, span.begin), append(bytes, span.end);
     const Quantities& quantities = settings.quantities;
-    for (const std::string& plane : quantities.planes) bytes += plane + '\n';
+    // Sums know no order of planes.
+    std::vector<std::string> planes = quantities.planes;
+    std::ranges::sort(planes);
+    for (const std::string& plane : planes) bytes += plane + '\n';
     append(bytes, quantities.ao_radius), append(bytes, quantities.ao_falloff);
     append(bytes, quantities.bounces), append(bytes, quantities.indirect_radius);
     append(bytes, quantities.indirect_falloff);

@@ -75,7 +75,7 @@ SpecularSurface specular_side(const SurfaceSample& sample) {
 // Inlined where surfaces are looked up by the batch.
 PLUMBLINE_INLINE void TracedScene::Part::corners(std::uint32_t triangle, float time, TracedTriangle& corners) const {
     const std::uint32_t* indices = triangles + 3 * static_cast<std::size_t>(triangle);
-    const auto position = [](const float* from, std::uint32_t vertex) {
+    const auto position = [](const float* from, std::size_t vertex) {
         return glm::vec3(from[3 * vertex], from[3 * vertex + 1], from[3 * vertex + 2]);
     };
     if (steps == 1) {
@@ -92,7 +92,7 @@ PLUMBLINE_INLINE void TracedScene::Part::corners(std::uint32_t triangle, float t
 
 glm::vec3 TracedScene::Part::normal_sum(std::uint32_t triangle, float u, float v, float time) const {
     if (normals.empty()) return glm::vec3(0.0f);
-    const std::uint32_t* indices = triangles + 3 * triangle;
+    const std::uint32_t* indices = triangles + 3 * static_cast<std::size_t>(triangle);
     const auto interpolated = [&](const glm::vec3* from) {
         return (1.0f - u - v) * from[indices[0]] + u * from[indices[1]] + v * from[indices[2]];
     };
@@ -104,7 +104,7 @@ glm::vec3 TracedScene::Part::normal_sum(std::uint32_t triangle, float u, float v
 
 glm::vec2 TracedScene::Part::uv(std::uint32_t triangle, float u, float v) const {
     if (!uvs) return {0.0f, 0.0f};
-    const std::uint32_t* corners = triangles + 3 * triangle;
+    const std::uint32_t* corners = triangles + 3 * static_cast<std::size_t>(triangle);
     return (1.0f - u - v) * (*uvs)[corners[0]] + u * (*uvs)[corners[1]] + v * (*uvs)[corners[2]];
 }
 
@@ -294,7 +294,7 @@ TracedTriangle TracedScene::triangle(std::uint32_t instance, std::uint32_t index
     TracedTriangle triangle;
     part.corners(index, time, triangle);
     if (part.uvs) {
-        const std::uint32_t* corners = part.triangles + 3 * index;
+        const std::uint32_t* corners = part.triangles + 3 * static_cast<std::size_t>(index);
         triangle.uv_a = (*part.uvs)[corners[0]], triangle.uv_b = (*part.uvs)[corners[1]],
         triangle.uv_c = (*part.uvs)[corners[2]];
     }
