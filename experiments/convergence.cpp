@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <ctime>
 #include <map>
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include "experiments/progress_line.h"
@@ -167,7 +165,7 @@ ConvergenceResults run_convergence(const ConvergenceExperiment& experiment, cons
     results.experiment = experiment;
     results.system = read_system_facts();
     results.command = options.command;
-    results.started = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
+    results.started = utc_now();
     Runner runner(experiment, options);
     for (const ConvergenceScene& entry : experiment.scenes) {
         if (!runner.stopped()) runner.run(entry, finder, results.curves);

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "frames/image_error.h"
+#include "experiments/config_values.h"
 
 namespace plumb {
 namespace {
@@ -41,16 +41,9 @@ ConvergenceExperiment parse_convergence(const ConfigValue& table, const std::fil
         if (std::ranges::find(noisy_planes, plane) == noisy_planes.end())
             reader.fail("planes", fmt::format("no plane '{}' with noise{}", plane, name_hint(plane, noisy_planes)));
     }
-    const std::vector<int> size = reader.integers("resolution", {experiment.width, experiment.height}, 1, 16384);
-    if (size.size() != 2) reader.fail("resolution", "must be [width, height]");
-    experiment.width = size[0], experiment.height = size[1];
+    read_resolution(reader, experiment.width, experiment.height);
     experiment.quantities.bounces = reader.integer("bounces", experiment.quantities.bounces, 1, 64);
-    try {
-        experiment.quantities.ao_falloff =
-            falloff_from_string(reader.text("ao_falloff", std::string(to_string(experiment.quantities.ao_falloff))));
-    } catch (const ImageError& error) {
-        reader.fail("ao_falloff", error.what());
-    }
+    read_falloff(reader, "ao_falloff", experiment.quantities.ao_falloff);
 
     experiment.samples = reader.integers("samples", experiment.samples, 2, 1 << 20);
     const bool ascend =

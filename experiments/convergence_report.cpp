@@ -9,6 +9,7 @@
 #include "embedded/page.h"
 #include "experiments/build_facts.h"
 #include "experiments/page.h"
+#include "experiments/program_json.h"
 #include "experiments/result_files.h"
 #include "experiments/svg_chart.h"
 #include "experiments/terminal_table.h"
@@ -104,13 +105,8 @@ std::string print_convergence_csv(const ConvergenceResults& results) {
 
 std::string print_convergence_json(const ConvergenceResults& results) {
     const ConvergenceExperiment& experiment = results.experiment;
-    const BuildFacts& build = build_facts();
     Json json;
-    json["program"] = {{"version", build.version},
-                       {"git", build.git_describe},
-                       {"compiler", build.compiler},
-                       {"build_type", build.build_type},
-                       {"integrator_hash", build.integrator_hash}};
+    json["program"] = program_json();
     json["command"] = results.command;
     json["started"] = results.started;
     json["seconds"] = results.seconds;

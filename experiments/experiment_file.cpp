@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "frames/image_error.h"
+#include "experiments/config_values.h"
 
 namespace plumb {
 namespace {
@@ -23,15 +23,8 @@ const std::vector<std::string> comparable_planes = {
 Quantities read_quantities(ConfigReader& reader) {
     Quantities quantities;
     quantities.bounces = reader.integer("bounces", quantities.bounces, 1, 64);
-    const auto read_falloff = [&reader](const char* key, Falloff& falloff) {
-        try {
-            falloff = falloff_from_string(reader.text(key, std::string(to_string(falloff))));
-        } catch (const ImageError& error) {
-            reader.fail(key, error.what());
-        }
-    };
-    read_falloff("ao_falloff", quantities.ao_falloff);
-    read_falloff("indirect_falloff", quantities.indirect_falloff);
+    read_falloff(reader, "ao_falloff", quantities.ao_falloff);
+    read_falloff(reader, "indirect_falloff", quantities.indirect_falloff);
     return quantities;
 }
 
@@ -108,9 +101,7 @@ Experiment parse_experiment(const ConfigValue& table, const std::filesystem::pat
             reader.fail("planes", fmt::format("unknown plane '{}'; {}", plane, name_hint(plane, comparable_planes)));
         }
     }
-    const std::vector<int> size = reader.integers("resolution", {experiment.width, experiment.height}, 1, 16384);
-    if (size.size() != 2) reader.fail("resolution", "must be [width, height]");
-    experiment.width = size[0], experiment.height = size[1];
+    read_resolution(reader, experiment.width, experiment.height);
 
     ConfigReader quantities = reader.table("quantities");
     experiment.quantities = read_quantities(quantities);

@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "experiments/build_facts.h"
 #include "experiments/page.h"
+#include "experiments/program_json.h"
 #include "frames/atomic_file.h"
 #include "metrics/comparison.h"
 
@@ -118,13 +118,8 @@ std::string print_csv(const RunResults& results) {
 }
 
 std::string print_json(const RunResults& results) {
-    const BuildFacts& build = build_facts();
     Json json;
-    json["program"] = {{"version", build.version},
-                       {"git", build.git_describe},
-                       {"compiler", build.compiler},
-                       {"build_type", build.build_type},
-                       {"integrator_hash", build.integrator_hash}};
+    json["program"] = program_json();
     json["command"] = results.command;
     json["started"] = results.started;
     json["seconds"] = results.seconds;

@@ -1,10 +1,8 @@
 #include "experiments/runner.h"
 
 #include <chrono>
-#include <ctime>
 #include <exception>
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include "experiments/pictures.h"
@@ -29,7 +27,7 @@ RunResults run_experiment(const Experiment& experiment, const SceneFinder& finde
     results.experiment = experiment;
     results.system = read_system_facts();
     results.command = options.command;
-    results.started = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
+    results.started = utc_now();
 
     const std::unique_ptr<GlContext> context = GlContext::create(options.backend);
     describe_context(context->info(), results);

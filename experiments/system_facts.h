@@ -18,6 +18,9 @@ struct SystemFacts {
 
 SystemFacts read_system_facts();
 
+// "2026-01-31T23:59:59Z"
+std::string utc_now();
+
 // "1.5 GiB"
 std::string print_bytes(std::uint64_t bytes);
 
