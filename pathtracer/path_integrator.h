@@ -32,8 +32,6 @@ struct EstimationPlan {
     // Lights without extent reach x without randomness through pixel centres; they are added exactly, once per pixel.
     bool exact_lights_at_first_point = true;
     int roulette_after = 0;  // bounces that every path is given; 0: no roulette
-
-    bool traces_anything() const { return ao || direct || indirect || reflection; }
 };
 
 class PathIntegrator {

@@ -4,7 +4,6 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
-#include <numeric>
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
@@ -28,6 +27,9 @@ int next_error_check(int samples) {
     return count;
 }
 bool is_error_check(int samples) { return samples >= 2 && next_error_check(samples - 1) == samples; }
+
+constexpr int tile_size = 16;  // pixels
+int tiles_along(int pixels) { return (pixels + tile_size - 1) / tile_size; }
 
 // About the brightest radiance that a surface of the scene may show: the brightest emission, and what the other lights
 // make of a white surface across the scene.
@@ -199,8 +201,7 @@ void ReferenceRun::add_spread_samples(Scratch& scratch) {
 }
 
 void ReferenceRun::render_tile(int tile, int first_sample, int count, Scratch& scratch) {
-    constexpr int tile_size = 16;
-    const int columns = (view_.width() + tile_size - 1) / tile_size;
+    const int columns = tiles_along(view_.width());
     const int left = tile % columns * tile_size, top = tile / columns * tile_size;
     for (int y = top; y < std::min(top + tile_size, view_.height()); ++y) {
         for (int x = left; x < std::min(left + tile_size, view_.width()); ++x) {
@@ -231,10 +232,7 @@ void ReferenceRun::render_tile(int tile, int first_sample, int count, Scratch& s
 }
 
 void ReferenceRun::render_pass(int first_sample, int count) {
-    constexpr int tile_size = 16;
-    const int columns = (view_.width() + tile_size - 1) / tile_size,
-              rows = (view_.height() + tile_size - 1) / tile_size;
-    tbb::parallel_for(0, columns * rows, [&](int tile) {
+    tbb::parallel_for(0, tiles_along(view_.width()) * tiles_along(view_.height()), [&](int tile) {
         std::unique_ptr<Scratch>& scratch = scratch_.local();
         if (!scratch) scratch = std::make_unique<Scratch>();
         render_tile(tile, first_sample, count, *scratch);

@@ -137,6 +137,10 @@ void TracedScene::reject_what_layers_lack(const RTCFilterFunctionNArguments* arg
     }
 }
 
+EmbreeQuery TracedScene::query_for(const OracleLayers* layers, RayCoherence coherence) {
+    return EmbreeQuery(coherence, layers ? &TracedScene::reject_what_layers_lack : nullptr, layers);
+}
+
 SurfaceHit TracedScene::intersect(EmbreeQuery& query, RTCScene scene, const glm::vec3& origin,
                                   const glm::vec3& direction, float nearest, float farthest, float time) {
     RTCRayHit ray;
@@ -153,17 +157,16 @@ SurfaceHit TracedScene::intersect(EmbreeQuery& query, RTCScene scene, const glm:
 
 SurfaceHit TracedScene::intersect(const glm::vec3& origin, const glm::vec3& direction, float nearest, float farthest,
                                   RayCoherence coherence, float time, const OracleLayers* layers) const {
-    EmbreeQuery query(coherence, layers ? &TracedScene::reject_what_layers_lack : nullptr, layers);
-    const RTCScene scene = layers ? scene_for_layers() : embree_scene_;
-    return intersect(query, scene, origin, direction, nearest, farthest, time);
+    EmbreeQuery query = query_for(layers, coherence);
+    return intersect(query, scene_for(layers), origin, direction, nearest, farthest, time);
 }
 
 void TracedScene::intersect(const RayBatch& rays, HitBatch& hits, const OracleLayers* layers) const {
     if (recorder_) recorder_->add_nearest(rays);
     // Never as coherent rays: those share a path through the tree, and which of two coincident triangles one meets
     // depends on the others.
-    EmbreeQuery query(RayCoherence::incoherent, layers ? &TracedScene::reject_what_layers_lack : nullptr, layers);
-    const RTCScene scene = layers ? scene_for_layers() : embree_scene_;
+    EmbreeQuery query = query_for(layers);
+    const RTCScene scene = scene_for(layers);
     // Eight rays together find the very hits that each finds alone, some tenth sooner (benchmark `packets`).
     constexpr int width = 8;
     for (int first = 0; first < rays.count; first += width) {
@@ -184,8 +187,8 @@ void TracedScene::intersect(const RayBatch& rays, HitBatch& hits, const OracleLa
 
 void TracedScene::occluded(const RayBatch& rays, Lanes<int>& blocked, const OracleLayers* layers) const {
     if (recorder_) recorder_->add_any(rays);
-    EmbreeQuery query(RayCoherence::incoherent, layers ? &TracedScene::reject_what_layers_lack : nullptr, layers);
-    const RTCScene scene = layers ? scene_for_layers() : embree_scene_;
+    EmbreeQuery query = query_for(layers);
+    const RTCScene scene = scene_for(layers);
     constexpr int width = 16;
     for (int first = 0; first < rays.count; first += width) {
         alignas(64) std::array<int, width> valid;

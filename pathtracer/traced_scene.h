@@ -96,7 +96,8 @@ private:
 
     void add(std::uint32_t index, const TimeSpan& span);
     void set_positions(RTCGeometry geometry, const Instance& instance, Part& part, const TimeSpan& span);
-    RTCScene scene_for_layers() const;
+    RTCScene scene_for(const OracleLayers* layers) const;  // the tree that takes a filter where there are layers
+    static EmbreeQuery query_for(const OracleLayers* layers, RayCoherence coherence = RayCoherence::incoherent);
     static SurfaceHit intersect(EmbreeQuery& query, RTCScene scene, const glm::vec3& origin, const glm::vec3& direction,
                                 float nearest, float farthest, float time);
     static void reject_holes(const RTCFilterFunctionNArguments* arguments);

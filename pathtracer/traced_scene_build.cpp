@@ -148,7 +148,8 @@ void TracedScene::add(std::uint32_t index, const TimeSpan& span) {
 }
 
 // The same geometry once more, in a tree whose queries may bring a filter: such queries cost more, also without one.
-RTCScene TracedScene::scene_for_layers() const {
+RTCScene TracedScene::scene_for(const OracleLayers* layers) const {
+    if (!layers) return embree_scene_;
     std::call_once(layered_scene_made_, [this] {
         layered_scene_ = rtcNewScene(device_);
         rtcSetSceneFlags(layered_scene_, static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | filter_per_query));

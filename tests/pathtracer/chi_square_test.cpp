@@ -132,22 +132,6 @@ TEST(ChiSquare, DiscreteDistributionChoosesByWeight) {
         Uses::first);
 }
 
-// An equirectangular sky of 16 x 8 texels with a sun, darkness below and a turn.
-Scene sky_scene() {
-    Scene scene;
-    Texture sky;
-    sky.width = 16, sky.height = 8, sky.wrap_v = TextureWrap::clamp;
-    for (int j = 0; j < 8; ++j) {
-        for (int i = 0; i < 16; ++i) {
-            const float value = i == 3 && j == 2 ? 30.0f : j > 5 ? 0.0f : 0.1f * static_cast<float>(1 + (i * j) % 5);
-            sky.texels.insert(sky.texels.end(), {half(value), half(value), half(value), half(1.0f)});
-        }
-    }
-    scene.textures.push_back(sky);
-    scene.environment = {glm::vec3(1.0f), 0, 1.3f};
-    return scene;
-}
-
 TEST(ChiSquare, EnvironmentImageHasItsDensity) {
     const Scene scene = sky_scene();
     const EnvironmentDistribution distribution(scene);

@@ -8,6 +8,7 @@
 #include "pathtracer/discrete_distribution.h"
 #include "pathtracer/environment_distribution.h"
 #include "pathtracer/sample_sequence.h"
+#include "tests/pathtracer/test_scenes.h"
 
 namespace plumb {
 namespace {
@@ -133,21 +134,6 @@ TEST(DiscreteDistribution, ChoosesByWeightAndNeverAWeightlessItem) {
     EXPECT_EQ(distribution.sample(0.25 + 0.75 * 0.5, within), 3u);
     EXPECT_DOUBLE_EQ(within, 0.5);
     EXPECT_TRUE(DiscreteDistribution(std::vector<double>{0.0, 0.0}).empty());
-}
-
-Scene sky_scene() {
-    Scene scene;
-    Texture sky;
-    sky.width = 16, sky.height = 8, sky.wrap_v = TextureWrap::clamp;
-    for (int j = 0; j < 8; ++j) {
-        for (int i = 0; i < 16; ++i) {
-            const float value = i == 3 && j == 2 ? 30.0f : j > 5 ? 0.0f : 0.1f * static_cast<float>(1 + (i * j) % 5);
-            sky.texels.insert(sky.texels.end(), {half(value), half(value), half(value), half(1.0f)});
-        }
-    }
-    scene.textures.push_back(sky);
-    scene.environment = {glm::vec3(1.0f), 0, 1.3f};
-    return scene;
 }
 
 TEST(EnvironmentDistribution, DensityIntegratesToOneAndCoversAllRadiance) {
