@@ -1,7 +1,7 @@
 // One layer of the G-buffer; gbuffer_pass.h says what the planes hold.
 //
-// Defines: PEEL (keep only what lies behind the first layer), WRITE_NORMAL, WRITE_ALBEDO, WRITE_EMISSION with the
-// location of each output, and those of material.glsl.
+// Defines: PEEL (keep only what lies behind the first layer), WRITE_NORMAL, WRITE_ALBEDO, WRITE_EMISSION,
+// WRITE_DISPLACEMENT with the location of each output, DISPLACEMENT (of instances that move), and those of material.glsl.
 #include "material.glsl"
 #include "normal_encoding.glsl"
 
@@ -10,6 +10,10 @@ in vec3 world_normal;
 in vec2 uv;
 #else
 const vec2 uv = vec2(0.0);
+#endif
+
+#ifdef DISPLACEMENT
+in vec3 displacement_to_previous;
 #endif
 
 #ifdef PEEL
@@ -26,6 +30,9 @@ layout(location = WRITE_ALBEDO) out vec3 albedo;
 #endif
 #ifdef WRITE_EMISSION
 layout(location = WRITE_EMISSION) out vec3 emission;
+#endif
+#ifdef WRITE_DISPLACEMENT
+layout(location = WRITE_DISPLACEMENT) out vec3 displacement;
 #endif
 
 void main() {
@@ -52,5 +59,8 @@ void main() {
 #else
     emission = vec3(0.0);
 #endif
+#endif
+#ifdef WRITE_DISPLACEMENT
+    displacement = displacement_to_previous;
 #endif
 }

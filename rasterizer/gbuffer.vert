@@ -1,4 +1,6 @@
 // Triangles of one instance, for the G-buffer.
+//
+// Defines: TEXTURE_COORDINATES, DISPLACEMENT.
 #include "scene.glsl"
 #include "view.glsl"
 
@@ -10,6 +12,9 @@ out vec3 world_normal;
 #ifdef TEXTURE_COORDINATES
 out vec2 uv;
 #endif
+#ifdef DISPLACEMENT
+out vec3 displacement_to_previous;
+#endif
 
 void main() {
     // Through camera space, where coordinates of what is seen closely are small: more exact than one product matrix.
@@ -18,5 +23,9 @@ void main() {
     world_normal = normalize(world_normal_from_object * normal);
 #ifdef TEXTURE_COORDINATES
     uv = texture_coordinates;
+#endif
+#ifdef DISPLACEMENT
+    mat4 moved = previous_world_from_object - world_from_object;  // exactly zero where nothing moves
+    displacement_to_previous = camera_space_direction((moved * vec4(position, 1.0)).xyz);
 #endif
 }

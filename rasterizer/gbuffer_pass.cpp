@@ -13,8 +13,11 @@ namespace {
 // The shared hardware depth buffer; not a plane that a pass could read.
 constexpr std::string_view depth_buffer_name = "gbuffer.depth_buffer";
 
-constexpr std::array<std::pair<const char*, GLenum>, 4> plane_formats{
-    {{"depth", GL_R32F}, {"normal", GL_RG16}, {"albedo", GL_RGBA16F}, {"emission", GL_RGBA16F}}};
+constexpr std::array<std::pair<const char*, GLenum>, 5> plane_formats{{{"depth", GL_R32F},
+                                                                       {"normal", GL_RG16},
+                                                                       {"albedo", GL_RGBA16F},
+                                                                       {"emission", GL_RGBA16F},
+                                                                       {"displacement", GL_RGBA32F}}};
 
 std::string layer_name(const char* plane, int layer) {
     return layer == 0 ? plane : std::string(second_layer_prefix) + plane;
@@ -58,12 +61,13 @@ void GBufferPass::create_targets(const PassResources& resources) {
     ShaderDefines defines;
     for (const auto& [plane, switch_name] :
          {std::pair{"depth", ""}, std::pair{"normal", "WRITE_NORMAL"}, std::pair{"albedo", "WRITE_ALBEDO"},
-          std::pair{"emission", "WRITE_EMISSION"}}) {
+          std::pair{"emission", "WRITE_EMISSION"}, std::pair{"displacement", "WRITE_DISPLACEMENT"}}) {
         const bool is_depth = std::string_view(plane) == "depth";
         if (!is_depth && !resources.is_read(layer_name(plane, layer_))) continue;
         if (!is_depth) defines.emplace_back(switch_name, fmt::format("{}", colours.size()));
         colours.push_back({&resources.planes.get(plane), layer_});
     }
+    if (resources.is_read(layer_name("displacement", layer_))) defines.emplace_back("DISPLACEMENT", "1");
     target_planes_ = static_cast<GLint>(colours.size());
     const GlAttachment depth{depth_buffer_};
     target_ = GlFramebuffer(context_, colours, depth, layer_ == 0 ? "gbuffer" : "gbuffer.layer2");

@@ -7,8 +7,9 @@
 //
 // Planes (array textures, layer k of the G-buffer in layer k): `depth` R32F, metres along -Z, +infinity where nothing
 // is; `normal` RG16, octahedral, world space, turned to the viewer; `albedo` RGBA16F; `emission` RGBA16F, in the first
-// layer also the environment's radiance where nothing is in front of it. Of these only the ones that somebody reads
-// exist. The hardware depth buffer is shared by the layers: reversed (near = 1, far = 0) 32-bit float.
+// layer also the environment's radiance where nothing is in front of it; `displacement` RGBA32F, where the surface point
+// of an instance that moves was in the frame before minus where it is, camera space of now, metres. Of these only the
+// ones that somebody reads exist. The hardware depth buffer is shared by the layers: reversed (near = 1, far = 0) 32-bit float.
 #pragma once
 
 #include <optional>

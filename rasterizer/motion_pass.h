@@ -1,4 +1,5 @@
-// Motion vectors of one layer: RG32F, per pixel the previous position minus the present one (motion.frag defines them).
+// Motion vectors of one layer: RG32F, per pixel the previous position minus the present one (motion.frag defines them),
+// for moving cameras and moving instances.
 #pragma once
 
 #include "rasterizer/fullscreen.h"
@@ -13,11 +14,12 @@ public:
 
 private:
     const GlTexture& depth_;
+    const GlTexture* displacement_ = nullptr;  // of scenes in which something moves
     int layer_;
     FullscreenDraw draw_;
     GlFramebuffer target_;
 };
 
-PassDeclaration declare_motion(int layer);
+PassDeclaration declare_motion(const Scene& scene, int layer);
 
 }  // namespace plumb

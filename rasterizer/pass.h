@@ -17,6 +17,7 @@
 #include "frames/frame.h"
 #include "frames/quantities.h"
 #include "rasterizer/method.h"
+#include "rasterizer/moment.h"
 #include "rasterizer/plane_textures.h"
 #include "rasterizer/shader.h"
 #include "scenes/camera.h"
@@ -45,11 +46,18 @@ struct PassResources {
     }
 };
 
-// What changes from frame to frame. The uniform block of view.glsl is bound and holds `view` already.
+// What changes from frame to frame. The uniform block of view.glsl is bound and holds the views already, and the scene's
+// geometry stands as it does now. Views are with the guard band.
 struct PassFrame {
-    const View& view;      // with the guard band
-    const View& previous;  // with the guard band
+    const View& view;
+    const View& previous;
     const Frame* truth = nullptr;
+    const View* next = nullptr;  // as known or, else, as foreseen; null: nobody looks ahead
+    // The frame that was rendered before this one is `previous`: what a pass kept of it can be found again. False on the
+    // first frame and on cuts.
+    bool continues = false;
+    // The frame before was told of this very one as its next.
+    bool foretold = false;
 };
 
 class Pass {

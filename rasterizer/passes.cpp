@@ -58,8 +58,8 @@ std::vector<PassDeclaration> declare_passes(const Scene& scene, const Method& me
     passes.push_back(declare_true_gbuffer(method));
     passes.push_back(declare_gbuffer(scene, method));
     passes.push_back(declare_second_layer(method));
-    passes.push_back(declare_motion(0));
-    passes.push_back(declare_motion(1));
+    passes.push_back(declare_motion(scene, 0));
+    passes.push_back(declare_motion(scene, 1));
     add_all(declare_depth_mip_chain());
     add_all(declare_ambient_obscurance(method, quantities));
     passes.push_back(declare_shadows(lights, method));

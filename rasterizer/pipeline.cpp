@@ -54,7 +54,8 @@ struct Pipeline::Implementation {
     }
 
     // Leaves times in `timer`.
-    void run(const View& view, const View* previous, const Frame* truth) {
+    void run(const FrameRequest& request) {
+        const View& view = request.now.view;
         if (view.width() != width || view.height() != height) {
             throw MethodError(
                 fmt::format("the pipeline was made for views of {}x{}, this one is {}x{}; make another one", width,
@@ -62,16 +63,29 @@ struct Pipeline::Implementation {
         }
         context.make_current();
         const int guard_band = method.gbuffer.guard_band;
+        const Moment& previous = request.previous ? *request.previous : request.now;
         const View wide = view.with_guard_band(guard_band);
-        const View wide_previous = (previous ? *previous : view).with_guard_band(guard_band);
-        view_uniforms.update(wide, wide_previous, guard_band);
-        const PassFrame frame{wide, wide_previous, truth};
+        const View wide_previous = previous.view.with_guard_band(guard_band);
+        const View wide_next =
+            (request.next ? request.next->view : extrapolate(previous.view, view)).with_guard_band(guard_band);
+        view_uniforms.update(wide, wide_previous, guard_band, &wide_next);
+        if (geometry) geometry->move_to(request.now, previous, request.next ? &*request.next : nullptr);
+        const PassFrame frame{wide,       wide_previous,         request.truth,
+                              &wide_next, rendered_ == previous, foretold_ == request.now};
+        // Whatever throws below leaves no history.
+        rendered_.reset(), foretold_.reset();
         for (std::size_t i = 0; i < passes.size(); ++i) {
             view_uniforms.bind();
             timer.begin(i);
             passes[i]->execute(frame);
             timer.end(i);
             context.check(declarations[plan.order[i]].name);
+        }
+        rendered_ = request.now;
+        if (request.next) {
+            foretold_ = request.next;
+        } else if (previous == request.now) {
+            foretold_ = request.now;
         }
     }
 
@@ -97,6 +111,10 @@ struct Pipeline::Implementation {
     std::optional<SceneGeometry> geometry;
     std::vector<std::unique_ptr<Pass>> passes;
     PassTimer timer;
+
+private:
+    std::optional<Moment> rendered_;  // the frame before
+    std::optional<Moment> foretold_;  // what it was told to come next
 };
 
 Pipeline::Pipeline(GlContext& context, const Scene& scene, const Method& method, const Quantities& quantities,
@@ -109,9 +127,10 @@ const std::vector<PassDecision>& Pipeline::decisions() const { return implementa
 
 std::string_view Pipeline::timer_description() const { return implementation_->timer.description(); }
 
-RasterResult Pipeline::render(const View& view, const View* previous, const Frame* truth) {
+RasterResult Pipeline::render(const FrameRequest& request) {
     Implementation& self = *implementation_;
-    self.run(view, previous, truth);
+    self.run(request);
+    const View& view = request.now.view;
     RasterResult result;
     result.timings = self.timings();
     for (const PassTiming& timing : result.timings) result.milliseconds += timing.milliseconds;
@@ -126,9 +145,19 @@ RasterResult Pipeline::render(const View& view, const View* previous, const Fram
     return result;
 }
 
-std::vector<PassTiming> Pipeline::time_passes(const View& view, const Frame* truth) {
-    implementation_->run(view, nullptr, truth);
+std::vector<PassTiming> Pipeline::time_passes(const FrameRequest& request) {
+    implementation_->run(request);
     return implementation_->timings();
+}
+
+RasterResult Pipeline::render(const View& view, const View* previous, const Frame* truth) {
+    FrameRequest request{.now = {view}, .truth = truth};
+    if (previous) request.previous = Moment{*previous};
+    return render(request);
+}
+
+std::vector<PassTiming> Pipeline::time_passes(const View& view, const Frame* truth) {
+    return time_passes({.now = {view}, .truth = truth});
 }
 
 }  // namespace plumb

@@ -9,6 +9,7 @@
 #include "frames/frame.h"
 #include "frames/quantities.h"
 #include "rasterizer/method.h"
+#include "rasterizer/moment.h"
 #include "scenes/camera.h"
 #include "scenes/scene.h"
 
@@ -44,10 +45,14 @@ public:
     // Each pass, whether it runs, and why.
     const std::vector<PassDecision>& decisions() const;
 
-    // Renders one frame. `previous` is the view of the frame before (for motion vectors), `truth` the frame whose
-    // planes feed the stages that the method takes from the truth.
+    // Renders one frame. Passes that keep something from frame to frame use it where the frame rendered before is the
+    // request's `previous`, and drop it else.
+    RasterResult render(const FrameRequest& request);
+    // Runs all passes, without reading anything back: for timing.
+    std::vector<PassTiming> time_passes(const FrameRequest& request);
+
+    // The same where the instances stay as the scene has them.
     RasterResult render(const View& view, const View* previous = nullptr, const Frame* truth = nullptr);
-    // Runs all passes once more, without reading anything back: for timing.
     std::vector<PassTiming> time_passes(const View& view, const Frame* truth = nullptr);
     // How the passes are timed: "GPU timer queries" or "glFinish and steady clock".
     std::string_view timer_description() const;

@@ -26,8 +26,10 @@ struct InstanceBlock {
     int alpha_channel;
     int two_sided;
     int padding;
+    glm::mat4 previous_world_from_object;
+    glm::mat4 next_world_from_object;
 };
-static_assert(sizeof(InstanceBlock) == 160);
+static_assert(sizeof(InstanceBlock) == 288);
 constexpr GLuint instance_binding = 1;
 
 struct MeshRange {
@@ -77,6 +79,34 @@ Bounds world_bounds(const Mesh& mesh, const glm::mat4& world_from_object) {
     return bounds;
 }
 
+// Of the box's corners: not tight, but eight points a frame whatever the mesh.
+Bounds world_bounds(const Bounds& object, const glm::mat4& world_from_object) {
+    Bounds bounds;
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::vec3 p((corner & 1 ? object.upper : object.lower).x, (corner & 2 ? object.upper : object.lower).y,
+                          (corner & 4 ? object.upper : object.lower).z);
+        bounds.add(glm::vec3(world_from_object * glm::vec4(p, 1.0f)));
+    }
+    return bounds;
+}
+
+InstanceBlock instance_block(const Material& material, const glm::mat4& now, const glm::mat4& previous,
+                             const glm::mat4& next) {
+    // Inverted in double precision: scales of 1e-3 and less make the determinant tiny.
+    const glm::mat3 normal_matrix(glm::transpose(glm::inverse(glm::dmat3(glm::mat3(now)))));
+    InstanceBlock block{};
+    block.world_from_object = now;
+    for (int column = 0; column < 3; ++column) block.normal_columns[column] = glm::vec4(normal_matrix[column], 0.0f);
+    block.base_colour_and_metallic = glm::vec4(material.base_colour, material.metallic);
+    block.emission_and_roughness = glm::vec4(material.emission, material.roughness);
+    block.alpha_cutoff = material.alpha_cutoff;
+    block.alpha_channel = material.alpha_texture != no_texture ? material.alpha_channel : 3;
+    block.two_sided = material.two_sided ? 1 : 0;
+    block.previous_world_from_object = previous;
+    block.next_world_from_object = next;
+    return block;
+}
+
 }  // namespace
 
 MaterialVariant variant_of(const Material& material) {
@@ -118,6 +148,7 @@ SceneGeometry::SceneGeometry(GlContext& context, const Scene& scene)
     upload_meshes();
     upload_instances();
     upload_textures();
+    find_moving();
     context_.check("upload of the scene");
 }
 
@@ -156,7 +187,7 @@ void SceneGeometry::upload_meshes() {
         draw.index_count = range.index_count;
         draw.first_index = range.first_index;
         draw.first_vertex = range.first_vertex;
-        draw.bounds = world_bounds(mesh, instance.world_from_object);
+        draw.bounds = draw.next_bounds = world_bounds(mesh, instance.world_from_object);
         draws_.push_back(draw);
     }
     std::ranges::stable_sort(draws_, {}, [](const SceneDraw& draw) { return std::tuple(draw.variant, draw.material); });
@@ -183,21 +214,37 @@ void SceneGeometry::upload_instances() {
     std::vector<std::byte> bytes(instance_stride_ * scene_.instances.size());
     for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
         const Instance& instance = scene_.instances[i];
-        const Material& material = scene_.materials[scene_.meshes[instance.mesh].material];
-        // Inverted in double precision: scales of 1e-3 and less make the determinant tiny.
-        const glm::mat3 normal_matrix(glm::transpose(glm::inverse(glm::dmat3(glm::mat3(instance.world_from_object)))));
-        InstanceBlock block{};
-        block.world_from_object = instance.world_from_object;
-        for (int column = 0; column < 3; ++column)
-            block.normal_columns[column] = glm::vec4(normal_matrix[column], 0.0f);
-        block.base_colour_and_metallic = glm::vec4(material.base_colour, material.metallic);
-        block.emission_and_roughness = glm::vec4(material.emission, material.roughness);
-        block.alpha_cutoff = material.alpha_cutoff;
-        block.alpha_channel = material.alpha_texture != no_texture ? material.alpha_channel : 3;
-        block.two_sided = material.two_sided ? 1 : 0;
+        const glm::mat4& pose = instance.world_from_object;
+        const InstanceBlock block =
+            instance_block(scene_.materials[scene_.meshes[instance.mesh].material], pose, pose, pose);
         std::copy_n(reinterpret_cast<const std::byte*>(&block), sizeof(block), &bytes[i * instance_stride_]);
     }
-    instances_ = GlBuffer::from(context_, bytes);
+    instances_ = GlBuffer(context_, bytes.size(), bytes.data(), GL_DYNAMIC_STORAGE_BIT);
+}
+
+void SceneGeometry::find_moving() {
+    for (std::size_t i = 0; i < draws_.size(); ++i) {
+        const Instance& instance = scene_.instances[draws_[i].instance];
+        if (!instance.moves()) continue;
+        const glm::mat4& pose = instance.world_from_object;
+        moving_.push_back({i, world_bounds(scene_.meshes[instance.mesh], glm::mat4(1.0f)), {pose, pose, pose}});
+    }
+}
+
+void SceneGeometry::move_to(const Moment& now, const Moment& previous, const Moment* next) {
+    for (MovingDraw& moving : moving_) {
+        SceneDraw& draw = draws_[moving.draw];
+        const Instance& instance = scene_.instances[draw.instance];
+        Poses poses{now.pose(instance), previous.pose(instance), {}};
+        poses.next = next ? next->pose(instance) : extrapolate(poses.previous, poses.now);
+        if (poses == moving.poses) continue;
+        moving.poses = poses;
+        draw.bounds = world_bounds(moving.object_bounds, poses.now);
+        draw.next_bounds = world_bounds(moving.object_bounds, poses.next);
+        const InstanceBlock block =
+            instance_block(scene_.materials[draw.material], poses.now, poses.previous, poses.next);
+        instances_.write(static_cast<std::size_t>(draw.instance) * instance_stride_, sizeof(block), &block);
+    }
 }
 
 void SceneGeometry::upload_textures() {
@@ -225,7 +272,7 @@ void SceneGeometry::bind_textures(const Material& material, const MaterialVarian
     if (variant.alpha_texture) textures_[material.alpha_texture].bind(3);
 }
 
-void SceneGeometry::draw(const SceneDraw& draw) const {
+void SceneGeometry::draw(const SceneDraw& draw, GLenum mode) const {
     const GladGLContext& gl = context_.gl;
     gl.BindBufferRange(GL_UNIFORM_BUFFER, instance_binding, instances_.id(),
                        static_cast<GLintptr>(static_cast<std::size_t>(draw.instance) * instance_stride_),
@@ -234,7 +281,7 @@ void SceneGeometry::draw(const SceneDraw& draw) const {
     // OpenGL takes the offset into the bound buffer in the place of a pointer.
     // NOLINTNEXTLINE(performance-no-int-to-ptr)
     const auto* offset = reinterpret_cast<const void*>(draw.first_index * sizeof(std::uint32_t));
-    gl.DrawElementsBaseVertex(GL_TRIANGLES, draw.index_count, GL_UNSIGNED_INT, offset, draw.first_vertex);
+    gl.DrawElementsBaseVertex(mode, draw.index_count, GL_UNSIGNED_INT, offset, draw.first_vertex);
 }
 
 }  // namespace plumb

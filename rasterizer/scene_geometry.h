@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "rasterizer/frustum.h"
+#include "rasterizer/moment.h"
 #include "rasterizer/shader.h"
 #include "scenes/scene.h"
 
@@ -43,7 +44,8 @@ struct SceneDraw {
     GLsizei index_count = 0;
     std::size_t first_index = 0;
     GLint first_vertex = 0;
-    Bounds bounds;  // world space
+    Bounds bounds;       // world space
+    Bounds next_bounds;  // in the frame to come
 };
 
 class SceneGeometry {
@@ -53,18 +55,34 @@ public:
     const std::vector<MaterialVariant>& variants() const { return variants_; }
     const std::vector<SceneDraw>& draws() const { return draws_; }  // by variant, then by material
 
+    // Puts the instances that move where they are at each moment. Without `next` they are taken to go on as they moved
+    // since `previous`.
+    void move_to(const Moment& now, const Moment& previous, const Moment* next);
+    bool anything_moves() const { return !moving_.empty(); }
+
     void bind() const { vertex_array_.bind(); }
     // Binds the textures that `variant` reads to units 0 to 3 (material.glsl).
     void bind_textures(const Material& material, const MaterialVariant& variant) const;
-    // Draws with the current program; bind() comes first.
-    void draw(const SceneDraw& draw) const;
+    // Draws with the current program, as triangles or as patches of them; bind() comes first.
+    void draw(const SceneDraw& draw, GLenum mode = GL_TRIANGLES) const;
 
     static constexpr GLuint first_free_texture_unit = 4;
 
 private:
+    struct Poses {
+        glm::mat4 now{1.0f}, previous{1.0f}, next{1.0f};
+        bool operator==(const Poses&) const = default;
+    };
+    struct MovingDraw {
+        std::size_t draw;  // index into draws_
+        Bounds object_bounds;
+        Poses poses;  // as uploaded
+    };
+
     void upload_meshes();
     void upload_instances();
     void upload_textures();
+    void find_moving();
 
     GlContext& context_;
     const Scene& scene_;
@@ -72,6 +90,7 @@ private:
     std::vector<MaterialVariant> variants_;
     GlBuffer vertices_, indices_, instances_;
     std::size_t instance_stride_ = 0;
+    std::vector<MovingDraw> moving_;
     GlVertexArray vertex_array_;
     std::vector<GlTexture> textures_;
 };

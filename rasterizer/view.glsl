@@ -13,6 +13,8 @@ layout(std140, binding = 0) uniform ViewBlock {
     float far_plane;
     float pixels_per_metre;   // at 1 m depth
     int first_inner_pixel;    // width of the guard band
+    mat4 next_camera_from_world;  // of the frame to come
+    mat4 next_clip_from_camera;
 };
 
 // Depth planes hold +infinity where nothing is seen.

@@ -19,15 +19,17 @@ struct ViewBlock {
     float pixels_per_metre;
     int first_inner_pixel;
     float padding[2];
+    glm::mat4 next_camera_from_world;
+    glm::mat4 next_clip_from_camera;
 };
 static_assert(offsetof(ViewBlock, view_size) == 256 && offsetof(ViewBlock, near_plane) == 280 &&
-              sizeof(ViewBlock) == 304);
+              offsetof(ViewBlock, next_camera_from_world) == 304);
 
 }  // namespace
 
 ViewUniforms::ViewUniforms(GlContext& context) : buffer_(context, sizeof(ViewBlock), nullptr, GL_DYNAMIC_STORAGE_BIT) {}
 
-void ViewUniforms::update(const View& view, const View& previous, int guard_band) const {
+void ViewUniforms::update(const View& view, const View& previous, int guard_band, const View* next) const {
     ViewBlock block{};
     block.camera_from_world = view.camera_from_world();
     block.world_from_camera = view.camera().world_from_camera;
@@ -42,6 +44,8 @@ void ViewUniforms::update(const View& view, const View& previous, int guard_band
     block.far_plane = view.camera().far_plane;
     block.pixels_per_metre = view.pixels_per_metre();
     block.first_inner_pixel = guard_band;
+    block.next_camera_from_world = (next ? *next : view).camera_from_world();
+    block.next_clip_from_camera = (next ? *next : view).clip_from_camera();
     buffer_.write(0, sizeof(block), &block);
 }
 

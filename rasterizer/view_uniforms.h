@@ -9,8 +9,8 @@ namespace plumb {
 class ViewUniforms {
 public:
     explicit ViewUniforms(GlContext& context);
-    // `view` and `previous` include the guard band, which is `guard_band` pixels wide.
-    void update(const View& view, const View& previous, int guard_band) const;
+    // The views include the guard band, which is `guard_band` pixels wide. Without a `next` one the view stays.
+    void update(const View& view, const View& previous, int guard_band, const View* next = nullptr) const;
     void bind() const { buffer_.bind(GL_UNIFORM_BUFFER, binding); }
 
 private:
