@@ -49,6 +49,18 @@ void add_blur(std::vector<MethodParameter>& parameters, const std::string& prefi
                                         });
 }
 
+// Why parameter `name` of the shadow maps changes nothing; empty where it matters.
+std::string shadow_reason(const ShadowSettings& shadow, std::string_view name) {
+    const bool paraboloids = shadow.point_map == PointShadowMap::dual_paraboloid;
+    if (name == "direct.shadow.point_map" || name == "direct.shadow.cube_size" ||
+        name.starts_with("direct.shadow.paraboloid_")) {
+        if (!shadow.lamps) return "direct.shadow.lamps = false";
+    }
+    if (name == "direct.shadow.cube_size" && paraboloids) return "direct.shadow.point_map = \"dual_paraboloid\"";
+    if (name.starts_with("direct.shadow.paraboloid_") && !paraboloids) return "direct.shadow.point_map = \"cube\"";
+    return "";
+}
+
 // Stores `value` in the parameter; returns what is wrong with it, or nothing.
 std::string store(const MethodParameter& parameter, const ConfigValue& value) {
     const auto in_range = [&](double number) { return number >= parameter.least && number <= parameter.most; };
@@ -110,8 +122,15 @@ std::vector<MethodParameter> method_parameters(Method& m) {
         {"gbuffer.minimum_separation", &m.gbuffer.minimum_separation, 0, 1e6},
         {"gbuffer.guard_band", &m.gbuffer.guard_band, 0, 4096},
         {"direct.source", choice(m.direct.source, sources)},
+        {"direct.shadow.lamps", &m.direct.shadow.lamps},
+        {"direct.shadow.point_map", choice(m.direct.shadow.point_map, {"cube", "dual_paraboloid"})},
+        {"direct.shadow.cube_generation", choice(m.direct.shadow.cube_generation, {"six_views", "one_pass"})},
+        {"direct.shadow.cube_distance", choice(m.direct.shadow.cube_distance, {"reciprocal", "linear"})},
         {"direct.shadow.cube_size", &m.direct.shadow.cube_size, 16, 8192},
+        {"direct.shadow.paraboloid_size", &m.direct.shadow.paraboloid_size, 16, 16384},
+        {"direct.shadow.paraboloid_tessellation", &m.direct.shadow.paraboloid_tessellation, 1, 64},
         {"direct.shadow.map_size", &m.direct.shadow.map_size, 16, 16384},
+        {"direct.shadow.pcf_radius", &m.direct.shadow.pcf_radius, 0, 16},
         {"direct.shadow.emitter_size", &m.direct.shadow.emitter_size, 16, 8192},
         {"direct.shadow.emitter_samples", &m.direct.shadow.emitter_samples, 1, 64},
         {"direct.shadow.bias", &m.direct.shadow.bias, 0, 1e3},
@@ -247,6 +266,7 @@ std::string reason_without_effect(const Method& method, std::string_view name) {
     if (name.starts_with("direct.") && name != "direct.source" && method.direct.source == SourceOfStage::truth) {
         return "direct.source = \"truth\"";
     }
+    if (std::string reason = shadow_reason(method.direct.shadow, name); !reason.empty()) return reason;
     const auto blur_reason = [&](std::string_view group, const BilateralBlurSettings& blur) {
         const bool off = name.starts_with(group) && name != fmt::format("{}radius", group) && blur.radius == 0;
         return off ? fmt::format("{}radius = 0", group) : std::string();

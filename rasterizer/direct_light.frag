@@ -1,129 +1,20 @@
 // Light that reaches each pixel of one layer straight from a light, reflected by its Lambertian part.
 //
 // Defines: POINT_LIGHTS, SPOT_LIGHTS, DIRECTIONAL_LIGHTS, EMITTERS (their numbers, where not zero), ENVIRONMENT,
-// AMBIENT_VISIBILITY, and the sizes of the shadow maps.
-#include "view.glsl"
+// AMBIENT_VISIBILITY, and those of shadow_lookup.glsl.
+#include "local_light.glsl"
 #include "normal_encoding.glsl"
 #include "polygon_light.glsl"
+#include "view.glsl"
 
 layout(binding = 0) uniform sampler2DArray depth_plane;
 layout(binding = 1) uniform sampler2DArray normal_plane;
 layout(binding = 2) uniform sampler2DArray albedo_plane;
 uniform int layer;
-uniform float bias;  // metres
 
 layout(location = 0) out vec3 direct;
 
 const float pi = 3.14159265358979;
-
-// Texels of a shadow map are flat steps across the receiver, and a filtered lookup reaches up to one texel away along each
-// axis of the map. Lifting the receiver along its normal by (texel size) * (|n_x| + |n_y|), n_x and n_y the normal in the
-// map's plane, makes it clear the steps of its own surface to first order, and no more than that.
-vec3 lifted(vec3 receiver, vec3 normal, float texel_size, float slope) {
-    return receiver + normal * (bias + texel_size * slope);
-}
-
-#if defined(POINT_CUBES) || defined(EMITTERS)
-// `from_light` leads from the light to the receiver. Depth in the map is near / (distance along the face's axis).
-float cube_visibility(samplerCubeArrayShadow maps, float size, int cube, float near, vec3 from_light, vec3 normal) {
-    vec3 distance = abs(from_light);
-    float along_axis = max(distance.x, max(distance.y, distance.z));
-    vec3 n = abs(normal);
-    float n_axis = distance.x == along_axis ? n.x : distance.y == along_axis ? n.y : n.z;
-    vec3 p = lifted(from_light, normal, 2.0 * along_axis / size, n.x + n.y + n.z - n_axis);
-    distance = abs(p);
-    along_axis = max(distance.x, max(distance.y, distance.z));
-    return texture(maps, vec4(p, float(cube)), near / along_axis);
-}
-#endif
-
-#ifdef POINT_CUBES
-layout(binding = 3) uniform samplerCubeArrayShadow point_cubes;
-#endif
-
-#ifdef SHADOW_MAPS
-layout(binding = 4) uniform sampler2DArrayShadow shadow_maps;
-
-float map_visibility(int map, mat4 clip_from_world, vec3 receiver) {
-    vec4 clip = clip_from_world * vec4(receiver, 1.0);
-    vec3 ndc = clip.xyz / clip.w;
-    return texture(shadow_maps, vec4(0.5 * ndc.xy + 0.5, float(map), ndc.z));
-}
-#endif
-
-#if defined(POINT_LIGHTS) || defined(SPOT_LIGHTS)
-// constant + linear d + quadratic d^2; exactly `square`, the squared distance, for the terms 0, 0, 1.
-float attenuation_divisor(vec4 terms, float square) {
-    return terms.x + terms.y * sqrt(square) + terms.z * square;
-}
-#endif
-
-#ifdef POINT_LIGHTS
-struct PointLight {
-    vec3 position;
-    float near;
-    vec3 intensity;
-    int cube;
-    vec4 attenuation;
-};
-layout(std430, binding = 0) readonly buffer PointBlock { PointLight point_lights[]; };
-
-vec3 point_irradiance(PointLight light, vec3 receiver, vec3 normal) {
-    vec3 to_light = light.position - receiver;
-    float square = dot(to_light, to_light);
-    float cosine = dot(normal, to_light) * inversesqrt(square);
-    if (cosine <= 0.0) return vec3(0.0);
-    return light.intensity * (cosine / attenuation_divisor(light.attenuation, square)) *
-           cube_visibility(point_cubes, POINT_CUBES, light.cube, light.near, -to_light, normal);
-}
-#endif
-
-#ifdef SPOT_LIGHTS
-struct SpotLight {
-    vec3 position;
-    int map;
-    vec3 direction;
-    float cosine_outer;
-    vec3 intensity;
-    float cosine_inner;
-    mat4 clip_from_world;
-    float texel_size;
-    float near;
-    int cube;
-    float padding;
-    vec4 attenuation;
-};
-layout(std430, binding = 1) readonly buffer SpotBlock { SpotLight spot_lights[]; };
-
-float spot_visibility(SpotLight light, vec3 receiver, vec3 normal) {
-#ifdef POINT_CUBES
-    if (light.map < 0) {
-        return cube_visibility(point_cubes, POINT_CUBES, light.cube, light.near, receiver - light.position, normal);
-    }
-#endif
-#ifdef SHADOW_MAPS
-    float along_axis = dot(receiver - light.position, light.direction);
-    float n_axis = dot(normal, light.direction);
-    // |n_x| + |n_y| is at most sqrt(2) times the part across the axis.
-    float slope = 1.41421356 * sqrt(max(0.0, 1.0 - n_axis * n_axis));
-    return map_visibility(light.map, light.clip_from_world, lifted(receiver, normal, light.texel_size * along_axis, slope));
-#else
-    return 1.0;
-#endif
-}
-
-vec3 spot_irradiance(SpotLight light, vec3 receiver, vec3 normal) {
-    vec3 to_light = light.position - receiver;
-    float square = dot(to_light, to_light);
-    vec3 direction = to_light * inversesqrt(square);
-    float cosine = dot(normal, direction);
-    float from_axis = -dot(direction, light.direction);
-    if (cosine <= 0.0 || from_axis <= light.cosine_outer) return vec3(0.0);
-    float cone = clamp((from_axis - light.cosine_outer) / (light.cosine_inner - light.cosine_outer), 0.0, 1.0);
-    return light.intensity * (cone * cone * cosine / attenuation_divisor(light.attenuation, square) *
-                              spot_visibility(light, receiver, normal));
-}
-#endif
 
 #ifdef DIRECTIONAL_LIGHTS
 struct DirectionalLight {
@@ -140,8 +31,8 @@ vec3 directional_irradiance(DirectionalLight light, vec3 receiver, vec3 normal) 
     float cosine = -dot(normal, light.direction);
     if (cosine <= 0.0) return vec3(0.0);
     float slope = abs(dot(normal, light.right.xyz)) + abs(dot(normal, light.up.xyz));
-    return light.irradiance *
-           (cosine * map_visibility(light.map, light.clip_from_world, lifted(receiver, normal, light.texel_size, slope)));
+    vec3 raised = lifted(receiver, normal, map_reach * light.texel_size, slope);
+    return light.irradiance * (cosine * map_visibility(light.map, light.clip_from_world, raised));
 }
 #endif
 
@@ -159,7 +50,7 @@ struct Piece {
 };
 layout(std430, binding = 3) readonly buffer EmitterBlock { Emitter emitters[]; };
 layout(std430, binding = 4) readonly buffer PieceBlock { Piece pieces[]; };
-layout(std430, binding = 5) readonly buffer EmitterCubeBlock { vec4 emitter_cube_positions[]; };  // w: near plane
+layout(std430, binding = 5) readonly buffer EmitterCubeBlock { vec4 emitter_cube_positions[]; };  // w: depth_scale
 
 vec3 emitter_irradiance(Emitter emitter, vec3 receiver, vec3 normal) {
     bool both_sides = emitter.both_sides != 0;
@@ -186,7 +77,7 @@ vec3 emitter_irradiance(Emitter emitter, vec3 receiver, vec3 normal) {
     float visibility = 0.0;
     for (int i = emitter.first_cube; i < emitter.first_cube + emitter.cubes; ++i) {
         vec4 cube = emitter_cube_positions[i];
-        visibility += cube_visibility(emitter_cubes, EMITTER_CUBE_SIZE, i, cube.w, receiver - cube.xyz, normal);
+        visibility += cube_visibility(emitter_cubes, EMITTER_CUBES, i, cube.w, receiver - cube.xyz, normal);
     }
     return sum * (visibility / float(emitter.cubes));
 }

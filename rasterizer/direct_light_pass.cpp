@@ -11,7 +11,16 @@ namespace plumb {
 namespace {
 
 // Texture units of direct_light.frag.
-enum Unit : GLuint { depth_unit, normal_unit, albedo_unit, points_unit, maps_unit, emitters_unit, ambient_unit };
+enum Unit : GLuint {
+    depth_unit,
+    normal_unit,
+    albedo_unit,
+    points_unit,
+    maps_unit,
+    emitters_unit,
+    ambient_unit,
+    paraboloids_unit
+};
 
 bool uses_ambient_visibility(const Scene& scene, const Method& method) {
     return !scene.environment.is_black() && method.ao.enabled;
@@ -42,10 +51,11 @@ DirectLightPass::DirectLightPass(const PassResources& resources, int layer)
     if (!planes.has("direct")) planes.create("direct", GL_RGBA16F, resources.layers_of("direct"));
     target_ = GlFramebuffer(context_, std::array{GlAttachment{&planes.get("direct"), layer}}, {}, "direct");
     shadow_points_ = find(planes, "shadow.points");
+    shadow_paraboloids_ = find(planes, "shadow.paraboloids");
     shadow_maps_ = find(planes, "shadow.maps");
     shadow_emitters_ = find(planes, "shadow.emitters");
     if (uses_ambient_visibility(resources.scene, resources.method)) ambient_visibility_ = &planes.get("ao");
-    if (!lights_.empty()) draw_.program().set("bias", resources.method.direct.shadow.bias);
+    if (lights_.any_shadows()) draw_.program().set("bias", resources.method.direct.shadow.bias);
     set_environment(resources);
 }
 
@@ -54,14 +64,11 @@ ShaderDefines DirectLightPass::defines(const PassResources& resources) const {
     const auto add_count = [&](const char* name, std::size_t count) {
         if (count > 0) result.emplace_back(name, fmt::format("{}", count));
     };
-    const ShadowSettings& shadow = resources.method.direct.shadow;
     add_count("POINT_LIGHTS", lights_.points.size());
     add_count("SPOT_LIGHTS", lights_.spots.size());
     add_count("DIRECTIONAL_LIGHTS", lights_.directionals.size());
     add_count("EMITTERS", lights_.emitters.size());
-    if (!lights_.point_cubes.empty()) result.emplace_back("POINT_CUBES", fmt::format("{}.0", shadow.cube_size));
-    if (!lights_.maps.empty()) result.emplace_back("SHADOW_MAPS", fmt::format("{}.0", shadow.map_size));
-    result.emplace_back("EMITTER_CUBE_SIZE", fmt::format("{}.0", shadow.emitter_size));
+    for (auto& define : shadow_defines(lights_, resources.method.direct.shadow)) result.push_back(std::move(define));
     const Environment& environment = resources.scene.environment;
     if (!environment.is_black()) result.emplace_back("ENVIRONMENT", environment.texture == no_texture ? "1" : "9");
     if (uses_ambient_visibility(resources.scene, resources.method)) result.emplace_back("AMBIENT_VISIBILITY", "1");
@@ -82,6 +89,7 @@ void DirectLightPass::execute(const PassFrame&) {
     normal_.bind(normal_unit);
     albedo_.bind(albedo_unit);
     if (shadow_points_) shadow_points_->bind(points_unit);
+    if (shadow_paraboloids_) shadow_paraboloids_->bind(paraboloids_unit);
     if (shadow_maps_) shadow_maps_->bind(maps_unit);
     if (shadow_emitters_) shadow_emitters_->bind(emitters_unit);
     if (ambient_visibility_) ambient_visibility_->bind(ambient_unit);

@@ -33,6 +33,7 @@ private:
     GlBuffer points_, spots_, directionals_, emitters_, pieces_, emitter_cubes_;
     const GlTexture &depth_, &normal_, &albedo_;
     const GlTexture* shadow_points_ = nullptr;
+    const GlTexture* shadow_paraboloids_ = nullptr;
     const GlTexture* shadow_maps_ = nullptr;
     const GlTexture* shadow_emitters_ = nullptr;
     const GlTexture* ambient_visibility_ = nullptr;

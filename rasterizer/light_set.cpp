@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -15,10 +17,17 @@ constexpr float emitter_near_plane = 0.001f;
 // A flat map of a cone wider than this (half angle, radians) wastes most of its texels on the middle.
 constexpr float widest_flat_cone = 1.1f;
 // Texels beyond the cone or the scene, so that filtering never reads past the border.
-constexpr float border_texels = 2.0f;
+float border_texels(const ShadowSettings& settings) { return 2.0f + static_cast<float>(settings.pcf_radius); }
 
 glm::vec4 terms_of(const Attenuation& attenuation) {
     return {attenuation.constant, attenuation.linear, attenuation.quadratic, 0.0f};
+}
+
+// Distance from `point` to the farthest corner of the box, with room for lifted receivers.
+float reach(const Bounds& box, const glm::vec3& point) {
+    if (box.empty()) return 1.0f;
+    const glm::vec3 farthest = glm::max(glm::abs(box.lower - point), glm::abs(box.upper - point));
+    return 1.01f * glm::length(farthest) + lamp_near_plane;
 }
 
 // Looks from `eye` along the unit `direction`; any roll.
@@ -37,11 +46,10 @@ SpotRecord make_spot(const SpotLight& light, const ShadowSettings& settings) {
     // Equal angles would divide by zero; a ten-thousandth in the cosine is a hard edge.
     record.cosine_inner = std::max(std::cos(light.inner_angle), record.cosine_outer + 1e-4f);
     record.attenuation = terms_of(light.attenuation);
-    record.near_plane = lamp_near_plane;
     record.map = record.cube = -1;
     if (light.outer_angle > widest_flat_cone) return record;
     const auto size = static_cast<float>(settings.map_size);
-    const float tangent = std::tan(light.outer_angle) * size / (size - 2.0f * border_texels);
+    const float tangent = std::tan(light.outer_angle) * size / (size - 2.0f * border_texels(settings));
     record.texel_size = 2.0f * tangent / size;
     const glm::mat3 camera_from_world = glm::transpose(axes_towards(light.direction));
     glm::mat4 view(camera_from_world);
@@ -67,8 +75,8 @@ DirectionalRecord make_directional(const DirectionalLight& light, const Bounds& 
         box.add(glm::transpose(axes) * point);
     }
     const auto size = static_cast<float>(settings.map_size);
-    const float side =
-        std::max({box.upper.x - box.lower.x, box.upper.y - box.lower.y, 1e-3f}) * size / (size - 2 * border_texels);
+    const float side = std::max({box.upper.x - box.lower.x, box.upper.y - box.lower.y, 1e-3f}) * size /
+                       (size - 2.0f * border_texels(settings));
     record.texel_size = side / size;
     // Depth 1 at the side of the light (+z of the axes), 0 at the far side; a little room for the lifted receivers.
     const float margin = 0.01f * scene.diagonal() + settings.bias;
@@ -85,32 +93,35 @@ DirectionalRecord make_directional(const DirectionalLight& light, const Bounds& 
 }  // namespace
 
 LightSet::LightSet(const Scene& scene, const ShadowSettings& settings) {
-    const auto add_point_cube = [&](const glm::vec3& position) {
-        point_cubes.push_back({position, lamp_near_plane, -1, {0.0f, 0.0f, 0.0f, 1.0f}});
-        return static_cast<int>(point_cubes.size()) - 1;
+    const Bounds bounds = scene.bounds();
+    const bool paraboloids = settings.point_map == PointShadowMap::dual_paraboloid;
+    const bool linear_cubes = settings.cube_distance == CubeDistance::linear;
+    // Returns the number of the cube or pair of paraboloids and the scale of its depths.
+    const auto add_point_map = [&](const glm::vec3& position) -> std::pair<int, float> {
+        if (!settings.lamps) return {-1, 0.0f};
+        std::vector<ShadowCube>& list = paraboloids ? point_paraboloids : point_cubes;
+        list.push_back({position, lamp_near_plane, reach(bounds, position), -1, {0.0f, 0.0f, 0.0f, 1.0f}});
+        return {static_cast<int>(list.size()) - 1, paraboloids || linear_cubes ? list.back().range : lamp_near_plane};
     };
     const auto add_map = [&](const glm::mat4& clip_from_world) {
         maps.push_back({clip_from_world});
         return static_cast<int>(maps.size()) - 1;
     };
     for (const PointLight& light : scene.point_lights) {
-        points.push_back({light.position, lamp_near_plane, light.intensity, add_point_cube(light.position),
-                          terms_of(light.attenuation)});
+        const auto [cube, depth_scale] = add_point_map(light.position);
+        points.push_back({light.position, depth_scale, light.intensity, cube, terms_of(light.attenuation)});
     }
     for (const SpotLight& light : scene.spot_lights) {
         SpotRecord& record = spots.emplace_back(make_spot(light, settings));
-        if (record.texel_size > 0.0f) {
+        if (record.texel_size == 0.0f) {
+            std::tie(record.cube, record.depth_scale) = add_point_map(light.position);
+        } else if (settings.lamps) {
             record.map = add_map(record.clip_from_world);
-        } else {
-            record.cube = add_point_cube(light.position);
         }
     }
-    if (!scene.directional_lights.empty()) {
-        const Bounds bounds = scene.bounds();
-        for (const DirectionalLight& light : scene.directional_lights) {
-            DirectionalRecord& record = directionals.emplace_back(make_directional(light, bounds, settings));
-            record.map = add_map(record.clip_from_world);
-        }
+    for (const DirectionalLight& light : scene.directional_lights) {
+        DirectionalRecord& record = directionals.emplace_back(make_directional(light, bounds, settings));
+        record.map = add_map(record.clip_from_world);
     }
     for (const EmitterLight& emitter : find_emitters(scene, settings.emitter_samples)) {
         emitters.push_back({static_cast<int>(pieces.size()),
@@ -122,8 +133,9 @@ LightSet::LightSet(const Scene& scene, const ShadowSettings& settings) {
                             {}});
         pieces.insert(pieces.end(), emitter.pieces.begin(), emitter.pieces.end());
         for (const glm::vec3& point : emitter.sample_points) {
-            emitter_cubes.push_back({point, emitter_near_plane, emitter.instance, emitter.front_plane});
-            emitter_cube_records.push_back({point, emitter_near_plane});
+            emitter_cubes.push_back(
+                {point, emitter_near_plane, reach(bounds, point), emitter.instance, emitter.front_plane});
+            emitter_cube_records.push_back({point, linear_cubes ? emitter_cubes.back().range : emitter_near_plane});
         }
     }
 }

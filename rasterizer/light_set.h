@@ -12,10 +12,11 @@
 
 namespace plumb {
 
-// Six square views around a point; depth is near / (distance along the face's axis).
+// All that is seen from a point, in a cube or two paraboloids.
 struct ShadowCube {
     glm::vec3 position{0.0f};
     float near_plane = 0.01f;
+    float range = 1.0f;                             // metres: no surface lies farther away
     int ignored_instance = -1;                      // does not cast into this map
     glm::vec4 front_plane{0.0f, 0.0f, 0.0f, 1.0f};  // nor does what lies behind it
 };
@@ -25,24 +26,26 @@ struct ShadowMap {
     glm::mat4 clip_from_world{1.0f};
 };
 
-// std430 layouts of direct_light.frag. `cube` and `map` are layers of the shadow textures.
+// std430 layouts of local_light.glsl and direct_light.frag. `cube` and `map` count within the shadow textures (`cube`
+// in shadow.points or shadow.paraboloids); -1: none. `depth_scale` is what a depth of the cube is a ratio to: the near
+// plane, or the range where distances are linear.
 struct PointRecord {
     glm::vec3 position;
-    float near_plane;
+    float depth_scale;
     glm::vec3 intensity;
     int cube;
     glm::vec4 attenuation;  // constant, linear, quadratic
 };
 struct SpotRecord {
     glm::vec3 position;
-    int map;  // -1: wider than a flat map can be, `cube` holds it
+    int map;  // a cone wider than a flat map can be has a `cube` instead
     glm::vec3 direction;
     float cosine_outer;
     glm::vec3 intensity;
     float cosine_inner;
     glm::mat4 clip_from_world;
     float texel_size;  // at 1 m
-    float near_plane;
+    float depth_scale;
     int cube;
     float padding;
     glm::vec4 attenuation;
@@ -63,7 +66,7 @@ struct EmitterRecord {
 };
 struct EmitterCubeRecord {
     glm::vec3 position;
-    float near_plane;
+    float depth_scale;
 };
 
 struct LightSet {
@@ -76,10 +79,13 @@ struct LightSet {
     std::vector<EmitterPiece> pieces;
     std::vector<EmitterCubeRecord> emitter_cube_records;
 
-    std::vector<ShadowCube> point_cubes, emitter_cubes;
+    std::vector<ShadowCube> point_cubes, point_paraboloids, emitter_cubes;
     std::vector<ShadowMap> maps;
 
     bool empty() const { return points.empty() && spots.empty() && directionals.empty() && emitters.empty(); }
+    bool any_shadows() const {
+        return !(point_cubes.empty() && point_paraboloids.empty() && emitter_cubes.empty() && maps.empty());
+    }
     // "2 point lights, 1 emissive surface"
     std::string summary() const;
 };

@@ -36,12 +36,18 @@ void validate(const Method& method) {
     const bool any_truth = gbuffer.source == SourceOfStage::truth || method.direct.source == SourceOfStage::truth;
     const ShadowSettings& shadow = method.direct.shadow;
     for (const auto& [name, value] : {std::pair{"cube_size", shadow.cube_size}, std::pair{"map_size", shadow.map_size},
-                                      std::pair{"emitter_size", shadow.emitter_size}}) {
+                                      std::pair{"emitter_size", shadow.emitter_size},
+                                      std::pair{"paraboloid_size", shadow.paraboloid_size}}) {
         require(value >= 16 && value <= 16384, method,
                 fmt::format("direct.shadow.{} is {}; it must lie between 16 and 16384 texels", name, value));
     }
     require(shadow.emitter_samples >= 1 && shadow.emitter_samples <= 64, method,
             fmt::format("direct.shadow.emitter_samples is {}; it must lie between 1 and 64", shadow.emitter_samples));
+    require(shadow.paraboloid_tessellation >= 1 && shadow.paraboloid_tessellation <= 64, method,
+            fmt::format("direct.shadow.paraboloid_tessellation is {}; it must lie between 1 and 64",
+                        shadow.paraboloid_tessellation));
+    require(shadow.pcf_radius >= 0 && shadow.pcf_radius <= 16, method,
+            fmt::format("direct.shadow.pcf_radius is {}; it must lie between 0 and 16 texels", shadow.pcf_radius));
     require(shadow.bias >= 0.0f && std::isfinite(shadow.bias), method,
             fmt::format("direct.shadow.bias is {}; it must be zero or more metres", shadow.bias));
     require(!(any_truth && gbuffer.guard_band > 0), method,

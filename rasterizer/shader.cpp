@@ -65,9 +65,11 @@ GLenum stage_of(std::string_view file) {
     const std::string_view extension = file.substr(std::min(file.rfind('.'), file.size()));
     if (extension == ".vert") return GL_VERTEX_SHADER;
     if (extension == ".frag") return GL_FRAGMENT_SHADER;
+    if (extension == ".tesc") return GL_TESS_CONTROL_SHADER;
+    if (extension == ".tese") return GL_TESS_EVALUATION_SHADER;
     if (extension == ".geom") return GL_GEOMETRY_SHADER;
     if (extension == ".comp") return GL_COMPUTE_SHADER;
-    throw GlError(fmt::format("shader file '{}' must end in .vert, .frag, .geom or .comp", file));
+    throw GlError(fmt::format("shader file '{}' must end in .vert, .tesc, .tese, .geom, .frag or .comp", file));
 }
 
 GLuint create_program(GlContext& context) {

@@ -1,36 +1,44 @@
 #include "rasterizer/shadow_pass.h"
 
-#include <array>
+#include <cmath>
+#include <span>
 
 #include <fmt/format.h>
 
+#include "rasterizer/cube_faces.h"
 #include "rasterizer/gl_error.h"
 
 namespace plumb {
 namespace {
 
 constexpr const char* point_texture = "shadow.points";
+constexpr const char* paraboloid_texture = "shadow.paraboloids";
 constexpr const char* emitter_texture = "shadow.emitters";
 constexpr const char* map_texture = "shadow.maps";
 
-// Where OpenGL's cube faces look, and which way is up on them.
-constexpr std::array<std::pair<glm::vec3, glm::vec3>, 6> cube_faces{{{{1, 0, 0}, {0, -1, 0}},
-                                                                     {{-1, 0, 0}, {0, -1, 0}},
-                                                                     {{0, 1, 0}, {0, 0, 1}},
-                                                                     {{0, -1, 0}, {0, 0, -1}},
-                                                                     {{0, 0, 1}, {0, -1, 0}},
-                                                                     {{0, 0, -1}, {0, -1, 0}}}};
-
-glm::mat4 clip_from_world(const ShadowCube& cube, int face) {
-    const auto& [forward, up] = cube_faces[static_cast<std::size_t>(face)];
-    const glm::mat3 axes(glm::cross(forward, up), up, -forward);
-    glm::mat4 view(glm::transpose(axes));
-    view[3] = glm::vec4(-glm::transpose(axes) * cube.position, 1.0f);
+glm::mat4 clip_from_world(const ShadowCube& cube, const CubeFace& face) {
+    const glm::mat3 camera_from_world = glm::transpose(face.axes());
+    glm::mat4 view(camera_from_world);
+    view[3] = glm::vec4(-camera_from_world * cube.position, 1.0f);
     glm::mat4 projection(0.0f);  // 90 degrees, infinite, reversed: depth = near / distance
     projection[0][0] = projection[1][1] = 1.0f;
     projection[3][2] = cube.near_plane;
     projection[2][3] = -1.0f;
     return projection * view;
+}
+
+// Radius of the horizon in a paraboloid map, whose half side is 1: two texels are left around it for filtering.
+float disc_scale(int size) { return 1.0f - 4.0f / static_cast<float>(size); }
+
+void require_layers(GlContext& context, const char* name, std::size_t layers) {
+    GLint most = 0;
+    context.gl.GetIntegerv(GL_MAX_ARRAY_TEXTURE_LAYERS, &most);
+    if (layers > static_cast<std::size_t>(most)) {
+        throw MethodError(
+            fmt::format("{} needs {} layers, this OpenGL has {} at most; set direct.shadow.lamps to false, "
+                        "or take lights out of the scene",
+                        name, layers, most));
+    }
 }
 
 // Lookups compare the receiver's depth with the texels and mix the four answers.
@@ -45,60 +53,113 @@ void make_comparing(const GlTexture& texture) {
 }  // namespace
 
 ShadowPass::ShadowPass(const PassResources& resources)
-    : context_(resources.context), scene_(resources.scene), geometry_(resources.geometry()) {
-    const ShadowSettings& settings = resources.method.direct.shadow;
-    const LightSet lights(scene_, settings);
-    add_cubes(resources.planes, point_texture, lights.point_cubes, settings.cube_size);
-    add_cubes(resources.planes, emitter_texture, lights.emitter_cubes, settings.emitter_size);
-    add_maps(resources.planes, lights.maps, settings.map_size);
+    : context_(resources.context),
+      scene_(resources.scene),
+      settings_(resources.method.direct.shadow),
+      geometry_(resources.geometry()) {
+    const LightSet lights(scene_, settings_);
+    add_cubes(resources.planes, point_texture, lights.point_cubes, settings_.cube_size);
+    add_cubes(resources.planes, emitter_texture, lights.emitter_cubes, settings_.emitter_size);
+    add_paraboloids(resources.planes, lights.point_paraboloids, settings_.paraboloid_size);
+    add_maps(resources.planes, lights.maps, settings_.map_size);
+    for (const MaterialVariant& variant : geometry_.variants()) coverage_.push_back(variant.coverage());
+    find_programs(resources.programs);
+}
 
-    bool any_clips = false;
-    for (const Target& target : targets_) any_clips = any_clips || target.clips;
-    for (const MaterialVariant& variant : geometry_.variants()) {
-        const MaterialVariant coverage = variant.coverage();
-        coverage_.push_back(coverage);
-        std::vector<std::string> files{"shadow.vert"};
-        if (coverage.alpha_mask) files.emplace_back("shadow.frag");
-        ShaderDefines defines = coverage.defines();
-        programs_.push_back(&resources.programs.get(files, defines));
-        if (!any_clips) continue;
-        defines.emplace_back("CLIP_PLANE", "1");
-        clipping_programs_.push_back(&resources.programs.get(files, defines));
+bool ShadowPass::is_linear(Projection projection) const {
+    if (projection == Projection::paraboloid) return true;
+    return projection != Projection::flat && settings_.cube_distance == CubeDistance::linear;
+}
+
+void ShadowPass::find_programs(ProgramCache& programs) {
+    for (const Target& target : targets_) {
+        std::vector<const Program*>& list = programs_[{target.projection, target.clips()}];
+        if (!list.empty()) continue;
+        for (const MaterialVariant& coverage : coverage_) {
+            ShaderDefines defines = coverage.defines();
+            std::vector<std::string> files{"shadow.vert"};
+            if (target.projection == Projection::whole_cube) files.emplace_back("shadow_cube.geom");
+            if (target.projection == Projection::paraboloid) {
+                files.insert(files.end(), {"shadow_paraboloid.tesc", "shadow_paraboloid.tese"});
+            }
+            if (files.size() > 1) defines.emplace_back("PROJECTED_LATER", "1");
+            if (is_linear(target.projection)) defines.emplace_back("LINEAR_DISTANCE", "1");
+            if (target.clips()) defines.emplace_back("CLIP_PLANE", "1");
+            if (coverage.alpha_mask || is_linear(target.projection)) files.emplace_back("shadow.frag");
+            list.push_back(&programs.get(files, defines));
+        }
     }
 }
 
 void ShadowPass::add_cubes(PlaneTextures& planes, const std::string& name, const std::vector<ShadowCube>& cubes,
                            int size) {
     if (cubes.empty()) return;
+    require_layers(context_, name.c_str(), 6 * cubes.size());
     const GlTexture& texture = planes.adopt(
         name, GlTexture::cube_array(context_, GL_DEPTH_COMPONENT32F, size, static_cast<int>(cubes.size())));
     make_comparing(texture);
+    const bool one_pass = settings_.cube_generation == CubeGeneration::one_pass;
+    if (one_pass)
+        framebuffers_.emplace_back(context_, std::span<const GlAttachment>(), GlAttachment{&texture, -1}, name.c_str());
     for (std::size_t i = 0; i < cubes.size(); ++i) {
-        const ShadowCube& cube = cubes[i];
+        const int first_layer = static_cast<int>(6 * i);
+        if (one_pass) {
+            targets_.push_back({.framebuffer = framebuffers_.size() - 1,
+                                .projection = Projection::whole_cube,
+                                .cube = cubes[i],
+                                .first_layer = first_layer});
+            continue;
+        }
         for (int face = 0; face < 6; ++face) {
-            targets_.push_back({GlFramebuffer(context_, {}, {&texture, static_cast<int>(6 * i) + face}, name.c_str()),
-                                clip_from_world(cube, face), cube.ignored_instance, cube.front_plane,
-                                glm::vec3(cube.front_plane) != glm::vec3(0.0f)});
+            framebuffers_.emplace_back(context_, std::span<const GlAttachment>(),
+                                       GlAttachment{&texture, first_layer + face}, name.c_str());
+            targets_.push_back(
+                {.framebuffer = framebuffers_.size() - 1,
+                 .projection = Projection::cube_face,
+                 .clip_from_world = clip_from_world(cubes[i], cube_faces[static_cast<std::size_t>(face)]),
+                 .cube = cubes[i]});
+        }
+    }
+}
+
+void ShadowPass::add_paraboloids(PlaneTextures& planes, const std::vector<ShadowCube>& cubes, int size) {
+    if (cubes.empty()) return;
+    require_layers(context_, paraboloid_texture, 2 * cubes.size());
+    const GlTexture& texture =
+        planes.adopt(paraboloid_texture,
+                     GlTexture::array(context_, GL_DEPTH_COMPONENT32F, size, size, static_cast<int>(2 * cubes.size())));
+    make_comparing(texture);
+    for (std::size_t i = 0; i < cubes.size(); ++i) {
+        for (int half = 0; half < 2; ++half) {
+            framebuffers_.emplace_back(context_, std::span<const GlAttachment>(),
+                                       GlAttachment{&texture, static_cast<int>(2 * i) + half}, paraboloid_texture);
+            targets_.push_back({.framebuffer = framebuffers_.size() - 1,
+                                .projection = Projection::paraboloid,
+                                .cube = cubes[i],
+                                .side = half == 0 ? 1.0f : -1.0f});
         }
     }
 }
 
 void ShadowPass::add_maps(PlaneTextures& planes, const std::vector<ShadowMap>& maps, int size) {
     if (maps.empty()) return;
+    require_layers(context_, map_texture, maps.size());
     const GlTexture& texture = planes.adopt(
         map_texture, GlTexture::array(context_, GL_DEPTH_COMPONENT32F, size, size, static_cast<int>(maps.size())));
     make_comparing(texture);
     for (std::size_t i = 0; i < maps.size(); ++i) {
-        targets_.push_back({GlFramebuffer(context_, {}, {&texture, static_cast<int>(i)}, map_texture),
-                            maps[i].clip_from_world,
-                            -1,
-                            {0.0f, 0.0f, 0.0f, 1.0f},
-                            false});
+        framebuffers_.emplace_back(context_, std::span<const GlAttachment>(),
+                                   GlAttachment{&texture, static_cast<int>(i)}, map_texture);
+        targets_.push_back({.framebuffer = framebuffers_.size() - 1, .clip_from_world = maps[i].clip_from_world});
     }
 }
 
 void ShadowPass::execute(const PassFrame&) {
     const GladGLContext& gl = context_.gl;
+    constexpr float infinitely_far = 0.0f;
+    for (const GlFramebuffer& framebuffer : framebuffers_) {
+        gl.ClearNamedFramebufferfv(framebuffer.id(), GL_DEPTH, 0, &infinitely_far);
+    }
     gl.Enable(GL_DEPTH_TEST);
     gl.DepthFunc(GL_GREATER);
     geometry_.bind();
@@ -106,37 +167,93 @@ void ShadowPass::execute(const PassFrame&) {
     gl.Disable(GL_DEPTH_TEST);
 }
 
-void ShadowPass::draw(const Target& target) {
+bool ShadowPass::may_see(const Target& target, const Frustum& frustum, const Bounds& box) const {
+    switch (target.projection) {
+        case Projection::flat:
+        case Projection::cube_face:
+            return frustum.may_see(box);
+        case Projection::whole_cube:
+            return true;
+        case Projection::paraboloid: {
+            // Wholly behind the horizon, and below its overlap (shadow_paraboloid.tese), even at the farthest.
+            const float height =
+                target.side * ((target.side > 0.0f ? box.upper.z : box.lower.z) - target.cube.position.z);
+            return height > -0.05f * target.cube.range;
+        }
+    }
+    return true;
+}
+
+void ShadowPass::set_uniforms(const Program& program, const Target& target) const {
+    if (target.projection == Projection::flat || target.projection == Projection::cube_face) {
+        program.set("clip_from_world", target.clip_from_world);
+    } else {
+        program.set("light_position", target.cube.position);
+    }
+    if (target.projection == Projection::cube_face && is_linear(target.projection)) {
+        program.set("light_position", target.cube.position);
+    }
+    if (target.projection == Projection::whole_cube) {
+        program.set("near_plane", target.cube.near_plane);
+        program.set("first_layer", target.first_layer);
+    }
+    if (target.projection == Projection::paraboloid) {
+        const auto size = static_cast<float>(settings_.paraboloid_size);
+        program.set("side", target.side);
+        program.set("disc_scale", disc_scale(settings_.paraboloid_size));
+        program.set("most_segments", static_cast<float>(settings_.paraboloid_tessellation));
+        program.set("segment_angle", 4.0f / std::sqrt(size));
+    }
+    if (is_linear(target.projection)) program.set("range", target.cube.range);
+    if (target.clips()) program.set("front_plane", target.cube.front_plane);
+}
+
+void ShadowPass::draw(const Target& target) const {
     const GladGLContext& gl = context_.gl;
-    constexpr float infinitely_far = 0.0f;
-    target.framebuffer.bind();
-    gl.ClearNamedFramebufferfv(target.framebuffer.id(), GL_DEPTH, 0, &infinitely_far);
-    if (target.clips) gl.Enable(GL_CLIP_DISTANCE0);
+    framebuffers_[target.framebuffer].bind();
+    const bool clips = target.clips() || target.projection == Projection::paraboloid;
+    if (clips) gl.Enable(GL_CLIP_DISTANCE0);
+    const GLenum mode = target.projection == Projection::paraboloid ? GL_PATCHES : GL_TRIANGLES;
+    const std::vector<const Program*>& programs = programs_.at({target.projection, target.clips()});
     const Frustum frustum(target.clip_from_world);
     int variant = -1, material = -1;
     for (const SceneDraw& draw : geometry_.draws()) {
-        if (draw.instance == target.ignored_instance || !frustum.may_see(draw.bounds)) continue;
+        if (draw.instance == target.cube.ignored_instance || !may_see(target, frustum, draw.bounds)) continue;
         if (draw.variant != variant) {
-            const Program& program = *(target.clips ? clipping_programs_ : programs_)[draw.variant];
+            const Program& program = *programs[draw.variant];
             program.use();
-            program.set("clip_from_world", target.clip_from_world);
-            if (target.clips) program.set("front_plane", target.front_plane);
+            set_uniforms(program, target);
         }
         if (draw.variant != variant || draw.material != material) {
             geometry_.bind_textures(scene_.materials[draw.material], coverage_[draw.variant]);
         }
         variant = draw.variant, material = draw.material;
-        geometry_.draw(draw);
+        geometry_.draw(draw, mode);
     }
-    if (target.clips) gl.Disable(GL_CLIP_DISTANCE0);
+    if (clips) gl.Disable(GL_CLIP_DISTANCE0);
 }
 
 std::vector<std::string> shadow_textures(const LightSet& lights) {
     std::vector<std::string> names;
     if (!lights.point_cubes.empty()) names.emplace_back(point_texture);
+    if (!lights.point_paraboloids.empty()) names.emplace_back(paraboloid_texture);
     if (!lights.emitter_cubes.empty()) names.emplace_back(emitter_texture);
     if (!lights.maps.empty()) names.emplace_back(map_texture);
     return names;
+}
+
+ShaderDefines shadow_defines(const LightSet& lights, const ShadowSettings& settings) {
+    ShaderDefines defines;
+    const auto add_size = [&](const char* name, bool there, int size) {
+        if (there) defines.emplace_back(name, fmt::format("{}.0", size));
+    };
+    add_size("POINT_CUBES", !lights.point_cubes.empty(), settings.cube_size);
+    add_size("POINT_PARABOLOIDS", !lights.point_paraboloids.empty(), settings.paraboloid_size);
+    add_size("EMITTER_CUBES", !lights.emitter_cubes.empty(), settings.emitter_size);
+    add_size("SHADOW_MAPS", !lights.maps.empty(), settings.map_size);
+    if (!lights.maps.empty()) defines.emplace_back("PCF_RADIUS", fmt::format("{}", settings.pcf_radius));
+    if (settings.cube_distance == CubeDistance::linear) defines.emplace_back("LINEAR_CUBES", "1");
+    return defines;
 }
 
 PassDeclaration declare_shadows(const LightSet& lights, const Method& method) {
@@ -145,22 +262,33 @@ PassDeclaration declare_shadows(const LightSet& lights, const Method& method) {
     pass.name = "shadows";
     pass.outputs = shadow_textures(lights);
     pass.create = [](const PassResources& resources) { return std::make_unique<ShadowPass>(resources); };
-    pass.remark =
-        fmt::format("{} cubes of {}^2, {} of {}^2, {} maps of {}^2", lights.point_cubes.size(), settings.cube_size,
-                    lights.emitter_cubes.size(), settings.emitter_size, lights.maps.size(), settings.map_size);
-    if (lights.empty()) {
-        pass.disabled = "the scene has no lights that cast shadows";
+    struct Group {
+        std::size_t count;
+        const char* name;
+        int size;
+        double squares;  // of that size in each
+    };
+    const Group groups[] = {{lights.point_cubes.size(), "cube", settings.cube_size, 6.0},
+                            {lights.point_paraboloids.size(), "pair of paraboloids", settings.paraboloid_size, 2.0},
+                            {lights.emitter_cubes.size(), "cube of an emitter", settings.emitter_size, 6.0},
+                            {lights.maps.size(), "map", settings.map_size, 1.0}};
+    double texels = 0.0;
+    for (const Group& group : groups) {
+        if (group.count == 0) continue;
+        pass.remark +=
+            fmt::format("{}{} x {} of {}^2", pass.remark.empty() ? "" : ", ", group.count, group.name, group.size);
+        texels += static_cast<double>(group.count) * group.squares * group.size * group.size;
+    }
+    if (!lights.any_shadows()) {
+        pass.disabled = lights.empty() ? "the scene has no lights that cast shadows" : "direct.shadow.lamps is false";
         return pass;
     }
-    const double texels =
-        6.0 * static_cast<double>(lights.point_cubes.size()) * settings.cube_size * settings.cube_size +
-        6.0 * static_cast<double>(lights.emitter_cubes.size()) * settings.emitter_size * settings.emitter_size +
-        1.0 * static_cast<double>(lights.maps.size()) * settings.map_size * settings.map_size;
     constexpr double most_bytes = 2.0 * 1024 * 1024 * 1024;
     if (4.0 * texels > most_bytes) {
         throw MethodError(
             fmt::format("method '{}': the shadow maps ({}) take {:.1f} GiB, more than 2; lower "
-                        "direct.shadow.cube_size, emitter_size, emitter_samples or map_size",
+                        "direct.shadow.cube_size, paraboloid_size, emitter_size, emitter_samples or map_size, or set "
+                        "direct.shadow.lamps to false",
                         method.name, pass.remark, 4.0 * texels / (1024.0 * 1024 * 1024)));
     }
     return pass;

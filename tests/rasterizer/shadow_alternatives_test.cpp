@@ -1,0 +1,179 @@
+// The choices among shadow maps: cubes made in one pass, of linear distances, paraboloids, percentage-closer filtering.
+#include "gl_test.h"
+#include "rasterizer/light_set.h"
+#include "shadow_rays.h"
+
+namespace plumb {
+namespace {
+
+using ShadowAlternativesTest = GlTest;
+PLUMBLINE_BOTH_BACKENDS(ShadowAlternativesTest);
+
+Scene make_lamp_scene() {
+    Scene scene = make_shadow_scene();
+    scene.point_lights.push_back({"lamp", {0.4f, 1.9f, 0.9f}, {9.0f, 7.0f, 5.0f}});
+    return scene;
+}
+
+ShadowCount count_lamp_shadows(GlContext& context, const Scene& scene, const Method& method, double blur = 0.03) {
+    return count_shadows(context, scene, near_view(), glm::dvec3(scene.point_lights[0].position), false, -1, blur,
+                         method);
+}
+
+TEST_P(ShadowAlternativesTest, EveryKindOfCubeCastsShadowsWhereRaysSay) {
+    const Scene scene = make_lamp_scene();
+    for (const CubeGeneration generation : {CubeGeneration::six_views, CubeGeneration::one_pass}) {
+        for (const CubeDistance distance : {CubeDistance::reciprocal, CubeDistance::linear}) {
+            SCOPED_TRACE(
+                fmt::format("generation {}, distance {}", static_cast<int>(generation), static_cast<int>(distance)));
+            Method method = plain_method();
+            method.direct.shadow.cube_generation = generation;
+            method.direct.shadow.cube_distance = distance;
+            expect_shadows(context(), scene, near_view(), glm::dvec3(scene.point_lights[0].position), false, -1, 0.03,
+                           method);
+        }
+    }
+}
+
+// The same projection of the same triangles: only rounding may tell the two ways apart.
+TEST_P(ShadowAlternativesTest, OnePassAndSixViewsGiveTheSamePicture) {
+    Scene scene = make_lamp_scene();
+    Material glow;  // one-sided and flat: its cube clips what lies behind it
+    glow.emission = {20.0f, 20.0f, 20.0f};
+    glow.two_sided = false;
+    scene.materials.push_back(glow);
+    add_quad(scene, 2, {-0.9f, 1.5f, -0.2f}, {0, 0, -0.3f}, {0.3f, 0, 0});
+    const View view = near_view();
+    Method method = plain_method();
+    const Image six = render(context(), scene, view, {"direct"}, method).plane("direct");
+    method.direct.shadow.cube_generation = CubeGeneration::one_pass;
+    const Image one = render(context(), scene, view, {"direct"}, method).plane("direct");
+    int different = 0;
+    for (std::size_t i = 0; i < six.values().size(); ++i) {
+        different += std::abs(six.values()[i] - one.values()[i]) > 1e-3f * six.values()[i];
+    }
+    // A vertex that rounds to the neighbouring 256th of a texel can change a texel at a silhouette.
+    EXPECT_LE(different, static_cast<int>(six.values().size() / 500));
+}
+
+// Cut finely enough a paraboloid is as good as a cube; as published, a floor of two triangles goes far astray.
+TEST_P(ShadowAlternativesTest, ParaboloidsNeedTessellation) {
+    const Scene scene = make_lamp_scene();
+    Method method = plain_method();
+    const int cube = count_lamp_shadows(context(), scene, method).wrong;
+    method.direct.shadow.point_map = PointShadowMap::dual_paraboloid;
+    int wrong[3], index = 0;
+    for (const int segments : {1, 8, 64}) {
+        method.direct.shadow.paraboloid_tessellation = segments;
+        const ShadowCount count = count_lamp_shadows(context(), scene, method);
+        wrong[index++] = count.wrong;
+        RecordProperty(fmt::format("wrong_of_{}_with_{}_segments", count.lit + count.dark, segments), count.wrong);
+    }
+    RecordProperty("wrong_with_cube", cube);
+    EXPECT_GT(wrong[0], 20 * (wrong[2] + 1)) << wrong[0] << ", " << wrong[1] << ", " << wrong[2];
+    EXPECT_LE(wrong[1], wrong[0]);
+    EXPECT_LE(wrong[2], 4) << "a part in a thousand of 4800 pixels, as for the cube";
+}
+
+// A spot light too wide for a flat map takes the paraboloids as well.
+TEST_P(ShadowAlternativesTest, WideSpotLightsUseParaboloids) {
+    Scene scene = make_shadow_scene();
+    scene.spot_lights.push_back(
+        {"spot", {0.4f, 2.6f, 0.9f}, glm::normalize(glm::vec3(-0.3f, -1.0f, -0.5f)), {9, 7, 5}, 0.5f, 1.5f});
+    Method method = plain_method();
+    method.direct.shadow.point_map = PointShadowMap::dual_paraboloid;
+    method.direct.shadow.paraboloid_tessellation = 64;
+    expect_shadows(context(), scene, near_view(), glm::dvec3(scene.spot_lights[0].position), false, -1, 0.03, method);
+}
+
+TEST_P(ShadowAlternativesTest, LampsWithoutShadowsShineThroughEverything) {
+    Scene scene = make_lamp_scene();
+    scene.spot_lights.push_back(
+        {"spot", {0.4f, 2.6f, 0.9f}, glm::normalize(glm::vec3(-0.3f, -1.0f, -0.5f)), {9, 7, 5}, 0.5f, 1.0f});
+    Method method = plain_method();
+    method.direct.shadow.lamps = false;
+    EXPECT_GT(count_lamp_shadows(context(), scene, method).wrong, 100);
+    EXPECT_TRUE(LightSet(scene, method.direct.shadow).any_shadows() == false);
+}
+
+// The orthographic map as rays see it: depth 1 at its near plane, 0 at its far plane, row 0 at the bottom.
+struct TracedMap {
+    TracedMap(const Scene& scene, const glm::dmat4& clip_from_world, int size_in)
+        : size(size_in), depth(static_cast<std::size_t>(size_in) * size_in, 0.0) {
+        const RayCaster caster(scene);
+        const glm::dmat4 world_from_clip = glm::inverse(clip_from_world);
+        for (int j = 0; j < size; ++j) {
+            for (int i = 0; i < size; ++i) {
+                const double x = 2.0 * (i + 0.5) / size - 1.0, y = 2.0 * (j + 0.5) / size - 1.0;
+                const glm::dvec3 from(world_from_clip * glm::dvec4(x, y, 1.0, 1.0));
+                const glm::dvec3 to(world_from_clip * glm::dvec4(x, y, 0.0, 1.0));
+                const double length = glm::length(to - from);
+                const CastHit hit = caster.cast(from, (to - from) / length, 0.0, length);
+                if (hit.hit) depth[static_cast<std::size_t>(j) * size + i] = 1.0 - hit.distance / length;
+            }
+        }
+    }
+    double lit(int i, int j, double z) const {
+        i = std::clamp(i, 0, size - 1), j = std::clamp(j, 0, size - 1);
+        return z >= depth[static_cast<std::size_t>(j) * size + i] ? 1.0 : 0.0;
+    }
+    // One bilinear comparison.
+    double compare(double u, double v, double z) const {
+        const double x = u * size - 0.5, y = v * size - 0.5;
+        const int i = static_cast<int>(std::floor(x)), j = static_cast<int>(std::floor(y));
+        const double a = x - i, b = y - j;
+        return (1 - a) * (1 - b) * lit(i, j, z) + a * (1 - b) * lit(i + 1, j, z) + (1 - a) * b * lit(i, j + 1, z) +
+               a * b * lit(i + 1, j + 1, z);
+    }
+    int size;
+    std::vector<double> depth;
+};
+
+// Percentage-closer filtering as it is written down, over a map that rays have made.
+TEST_P(ShadowAlternativesTest, PercentageCloserFilteringAveragesComparisons) {
+    Scene scene = make_shadow_scene();
+    scene.directional_lights.push_back({"sun", glm::normalize(glm::vec3(-0.4f, -1.0f, -0.6f)), {3, 2, 1}});
+    const View view = near_view();
+    for (const int radius : {0, 1, 3}) {
+        Method method = plain_method();
+        method.direct.shadow.map_size = 128;
+        method.direct.shadow.pcf_radius = radius;
+        const DirectionalRecord sun = LightSet(scene, method.direct.shadow).directionals[0];
+        const TracedMap map(scene, glm::dmat4(sun.clip_from_world), 128);
+        const Frame frame = render(context(), scene, view, {"position", "normal", "albedo", "direct", "depth"}, method);
+        int compared = 0, different = 0, partly = 0;
+        for (int y = 0; y < view.height(); ++y) {
+            for (int x = 0; x < view.width(); ++x) {
+                if (std::isinf(frame.plane("depth").at(x, y))) continue;
+                const glm::dvec3 n = vector_at(frame.plane("normal"), x, y), direction(sun.direction);
+                const double cosine = -glm::dot(n, direction);
+                if (cosine < 0.05) continue;
+                const double slope =
+                    std::abs(glm::dot(n, glm::dvec3(sun.right))) + std::abs(glm::dot(n, glm::dvec3(sun.up)));
+                const glm::dvec3 raised = vector_at(frame.plane("position"), x, y) +
+                                          n * (method.direct.shadow.bias + (radius + 1.0) * sun.texel_size * slope);
+                const glm::dvec3 ndc(glm::dmat4(sun.clip_from_world) * glm::dvec4(raised, 1.0));
+                double sum = 0.0;
+                for (int dy = -radius; dy <= radius; ++dy) {
+                    for (int dx = -radius; dx <= radius; ++dx) {
+                        sum += map.compare(0.5 + 0.5 * ndc.x + dx / 128.0, 0.5 + 0.5 * ndc.y + dy / 128.0, ndc.z);
+                    }
+                }
+                const double expected = sum / ((2 * radius + 1) * (2 * radius + 1));
+                const double unshadowed = frame.plane("albedo").at(x, y) / glm::pi<double>() * 3.0 * cosine;
+                const double visibility = frame.plane("direct").at(x, y) / unshadowed;
+                ++compared;
+                partly += expected > 0.05 && expected < 0.95;
+                // Half floats, and filter weights of 8 bits.
+                different += std::abs(visibility - expected) > 0.012;
+            }
+        }
+        EXPECT_GT(compared, 3000);
+        EXPECT_GT(partly, 100);
+        // Texels at silhouettes, whose centre the rasterizer's grid of 1/256 texel sees on the other side.
+        EXPECT_LE(different, compared / 100) << "radius " << radius << ": " << different << " of " << compared;
+    }
+}
+
+}  // namespace
+}  // namespace plumb
