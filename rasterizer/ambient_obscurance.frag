@@ -47,7 +47,7 @@ void main() {
     float radius_pixels = radius_in_pixels(RADIUS, centre_depth);
     if (is_background(centre_depth) || radius_pixels < 1.0) return;
 
-    vec3 camera_normal = camera_space_direction(decode_normal(texelFetch(normal, ivec3(pixel, 0), 0).xy));
+    vec3 camera_normal = camera_space_direction(normal_of_texel(texelFetch(normal, ivec3(pixel, 0), 0)));
     vec3 centre = camera_space_point_at(pixel, centre_depth);
     vec2 spin = spiral_spin(pixel, SPIRAL_JITTER_HALF);
     float tap_spacing = radius_pixels / float(SPIRAL_SAMPLES);

@@ -23,7 +23,7 @@ Surface surface_at(ivec2 pixel) {
     Surface surface;
     surface.depth = texelFetch(depth, ivec3(pixel, 0), 0).r;
     surface.point = camera_space_point_at(pixel, min(surface.depth, 1e12));
-    surface.normal = decode_normal(texelFetch(normal, ivec3(pixel, 0), 0).xy);
+    surface.normal = normal_of_texel(texelFetch(normal, ivec3(pixel, 0), 0));
     return surface;
 }
 

@@ -109,7 +109,7 @@ void main() {
     direct = vec3(0.0);
     if (is_background(depth)) return;
     vec3 receiver = world_space_point(gl_FragCoord.xy, depth);
-    vec3 normal = decode_normal(texelFetch(normal_plane, texel, 0).rg);
+    vec3 normal = normal_of_texel(texelFetch(normal_plane, texel, 0));
     vec3 irradiance = vec3(0.0);
 #ifdef POINT_LIGHTS
     for (int i = 0; i < POINT_LIGHTS; ++i) irradiance += point_irradiance(point_lights[i], receiver, normal);

@@ -1,29 +1,19 @@
-// One layer of the G-buffer; gbuffer_pass.h says what the planes hold.
+// One layer of the G-buffer, or all at once; gbuffer_planes.h says what the planes hold.
 //
-// Defines: PEEL (keep only what lies behind the first layer), WRITE_NORMAL, WRITE_ALBEDO, WRITE_EMISSION,
-// WRITE_DISPLACEMENT with the location of each output, DISPLACEMENT (of instances that move), and those of material.glsl.
+// Defines: COMPARISON_LAYER (of the depth behind which fragments are kept), LAYERS_AT_ONCE (then only those of layer 1
+// are compared, and layer 2 is the depth of the frame to come), REPROJECT (compares in the previous frame), WRITE_NORMAL,
+// WRITE_ALBEDO, WRITE_EMISSION, WRITE_DISPLACEMENT, WRITE_POSITION with the location of each output, those of
+// material.glsl and of gbuffer_vertex.glsl.
+#include "gbuffer_vertex.glsl"
 #include "material.glsl"
 #include "normal_encoding.glsl"
+#include "view.glsl"
 
-in vec3 world_normal;
-#ifdef TEXTURE_COORDINATES
-in vec2 uv;
-#else
-const vec2 uv = vec2(0.0);
-#endif
-
-#ifdef DISPLACEMENT
-in vec3 displacement_to_previous;
-#endif
-
-#ifdef PEEL
-layout(binding = 4) uniform sampler2DArray first_depth;
-uniform float minimum_separation;  // metres
-#endif
+in SurfaceVertex { SURFACE_VERTEX_MEMBERS } vertex;
 
 layout(location = 0) out float depth;
 #ifdef WRITE_NORMAL
-layout(location = WRITE_NORMAL) out vec2 normal;
+layout(location = WRITE_NORMAL) out vec4 normal;
 #endif
 #ifdef WRITE_ALBEDO
 layout(location = WRITE_ALBEDO) out vec3 albedo;
@@ -34,21 +24,66 @@ layout(location = WRITE_EMISSION) out vec3 emission;
 #ifdef WRITE_DISPLACEMENT
 layout(location = WRITE_DISPLACEMENT) out vec3 displacement;
 #endif
+#ifdef WRITE_POSITION
+layout(location = WRITE_POSITION) out vec3 camera_position;
+#endif
+
+#ifdef COMPARISON_LAYER
+layout(binding = 4) uniform sampler2DArray comparison;
+uniform float minimum_separation;  // metres
+
+// Also false where the comparison is empty (+infinity).
+bool lies_behind(float fragment_depth, ivec2 pixel) {
+    return fragment_depth > texelFetch(comparison, ivec3(pixel, COMPARISON_LAYER), 0).r + minimum_separation;
+}
+
+#ifdef REPROJECT
+uniform bool follow_motion;  // else the comparison is of this frame
+
+bool lay_behind() {
+    vec3 point = camera_space_point(gl_FragCoord.xy, depth);
+#ifdef FOLLOW_INSTANCES
+    point += vertex.displacement;
+#endif
+    vec3 previous = (previous_camera_from_camera * vec4(point, 1.0)).xyz;
+    float previous_depth = -previous.z;
+    vec2 pixel = 0.5 * view_size * (previous.xy / (previous_depth * previous_tan_half) + 1.0);
+    bool seen = previous_depth > 0.0 && all(greaterThanEqual(pixel, vec2(0.0))) && all(lessThan(pixel, view_size));
+    return seen && lies_behind(previous_depth, ivec2(pixel));
+}
+#endif
+#endif
+
+bool is_kept() {
+#if !defined(COMPARISON_LAYER)
+    return true;
+#else
+#ifdef LAYERS_AT_ONCE
+    if (gl_Layer != 1) return true;
+#endif
+#ifdef REPROJECT
+    if (follow_motion) return lay_behind();
+#endif
+    return lies_behind(depth, ivec2(gl_FragCoord.xy));
+#endif
+}
 
 void main() {
     // w_clip is the distance along the camera's -Z; its inverse is linear on the screen.
     depth = 1.0 / gl_FragCoord.w;
-#ifdef PEEL
-    // Also false where the first layer is empty (+infinity).
-    if (!(depth > texelFetch(first_depth, ivec3(gl_FragCoord.xy, 0), 0).r + minimum_separation)) discard;
+    if (!is_kept()) discard;
+#ifdef TEXTURE_COORDINATES
+    vec2 uv = vertex.uv;
+#else
+    const vec2 uv = vec2(0.0);
 #endif
 #ifdef ALPHA_MASK
     if (!is_opaque(uv)) discard;
 #endif
     bool dark = two_sided == 0 && !gl_FrontFacing;
 #ifdef WRITE_NORMAL
-    vec3 n = normalize(world_normal);
-    normal = encode_normal(gl_FrontFacing ? n : -n);
+    vec3 n = normalize(vertex.world_normal);
+    normal = texel_of_normal(gl_FrontFacing ? n : -n);
 #endif
 #ifdef WRITE_ALBEDO
     albedo = dark ? vec3(0.0) : surface_albedo(uv);
@@ -61,6 +96,13 @@ void main() {
 #endif
 #endif
 #ifdef WRITE_DISPLACEMENT
-    displacement = displacement_to_previous;
+#ifdef FOLLOW_INSTANCES
+    displacement = vertex.displacement;
+#else
+    displacement = vec3(0.0);
+#endif
+#endif
+#ifdef WRITE_POSITION
+    camera_position = camera_space_point(gl_FragCoord.xy, depth);
 #endif
 }

@@ -1,6 +1,11 @@
 // Triangles of one instance, for the G-buffer.
 //
-// Defines: TEXTURE_COORDINATES, DISPLACEMENT.
+// Defines: LAYERS_AT_ONCE (2, or 3 where the last is the depth of the frame to come), LAYER_OF_INSTANCE (layers are
+// selected here), STANDARD_DEPTH, and those of gbuffer_vertex.glsl.
+#ifdef LAYER_OF_INSTANCE
+#extension GL_ARB_shader_viewport_layer_array : require
+#endif
+#include "gbuffer_vertex.glsl"
 #include "scene.glsl"
 #include "view.glsl"
 
@@ -8,24 +13,40 @@ layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec2 texture_coordinates;
 
-out vec3 world_normal;
-#ifdef TEXTURE_COORDINATES
-out vec2 uv;
-#endif
-#ifdef DISPLACEMENT
-out vec3 displacement_to_previous;
+out SurfaceVertex { SURFACE_VERTEX_MEMBERS } vertex;
+#if defined(LAYERS_AT_ONCE) && LAYERS_AT_ONCE == 3 && !defined(LAYER_OF_INSTANCE)
+out vec4 next_position;  // in the frame to come
 #endif
 
-void main() {
-    // Through camera space, where coordinates of what is seen closely are small: more exact than one product matrix.
-    vec4 world = world_from_object * vec4(position, 1.0);
-    gl_Position = clip_from_camera * (camera_from_world * world);
-    world_normal = normalize(world_normal_from_object * normal);
-#ifdef TEXTURE_COORDINATES
-    uv = texture_coordinates;
+// Through camera space, where coordinates of what is seen closely are small: more exact than one product matrix.
+vec4 seen_by(mat4 clip_from_camera, mat4 camera_from_world, mat4 world_from_object) {
+    vec4 clip = clip_from_camera * (camera_from_world * (world_from_object * vec4(position, 1.0)));
+#ifdef STANDARD_DEPTH
+    clip.z = clip.w - clip.z;
 #endif
-#ifdef DISPLACEMENT
+    return clip;
+}
+
+void main() {
+    gl_Position = seen_by(clip_from_camera, camera_from_world, world_from_object);
+#if defined(LAYERS_AT_ONCE) && LAYERS_AT_ONCE == 3
+    vec4 next = seen_by(next_clip_from_camera, next_camera_from_world, next_world_from_object);
+#ifndef LAYER_OF_INSTANCE
+    next_position = next;
+#endif
+#endif
+#ifdef LAYER_OF_INSTANCE
+    gl_Layer = gl_InstanceID;
+#if LAYERS_AT_ONCE == 3
+    if (gl_InstanceID == 2) gl_Position = next;
+#endif
+#endif
+    vertex.world_normal = normalize(world_normal_from_object * normal);
+#ifdef TEXTURE_COORDINATES
+    vertex.uv = texture_coordinates;
+#endif
+#ifdef FOLLOW_INSTANCES
     mat4 moved = previous_world_from_object - world_from_object;  // exactly zero where nothing moves
-    displacement_to_previous = camera_space_direction((moved * vec4(position, 1.0)).xyz);
+    vertex.displacement = camera_space_direction((moved * vec4(position, 1.0)).xyz);
 #endif
 }

@@ -1,54 +1,43 @@
-// One layer of the deep G-buffer, by rasterising the scene.
+// One layer of the deep G-buffer by a geometry pass of its own: depth peeling.
 //
-// The first layer is the nearest surface of each pixel. The second is peeled: the nearest surface that lies more than
-// `minimum_separation` metres of linear depth behind the first, so that near-coplanar detail does not use it up.
+// The first layer is the nearest surface of each pixel. Each further one is peeled: the nearest surface that lies more
+// than the minimum separation of linear depth behind the layer before it, so that near-coplanar detail does not use
+// layers up. Exact whatever moves; a layer costs a pass over all geometry.
 //   Source: depth peeling, Everitt 2001; minimum separation, Mara et al. 2016, "Deep G-Buffers for Stable Global
-//   Illumination Approximation".
+//   Illumination Approximation"; as a fraction of the frustum, Nielsen 2015.
 //
-// Planes (array textures, layer k of the G-buffer in layer k): `depth` R32F, metres along -Z, +infinity where nothing
-// is; `normal` RG16, octahedral, world space, turned to the viewer; `albedo` RGBA16F; `emission` RGBA16F, in the first
-// layer also the environment's radiance where nothing is in front of it; `displacement` RGBA32F, where the surface point
-// of an instance that moves was in the frame before minus where it is, camera space of now, metres. Of these only the
-// ones that somebody reads exist. The hardware depth buffer is shared by the layers: reversed (near = 1, far = 0) 32-bit float.
+// gbuffer_planes.h says what the planes hold. The hardware's depth buffer is shared by the layers.
 #pragma once
 
-#include <optional>
-#include <vector>
-
-#include "rasterizer/environment_light.h"
-#include "rasterizer/fullscreen.h"
-#include "rasterizer/pass.h"
-#include "rasterizer/scene_geometry.h"
+#include "rasterizer/gbuffer_draw.h"
 
 namespace plumb {
 
 class GBufferPass final : public Pass {
 public:
-    // `layer` 0 or 1; the second layer needs the first one's pass to be made before.
+    // `layer` counts from 0; a further layer needs the pass of the first one to be made before.
     GBufferPass(const PassResources& resources, int layer);
     void execute(const PassFrame& frame) override;
 
 private:
-    void create_planes(const PassResources& resources);
-    void create_targets(const PassResources& resources);
-    void draw_scene(const Frustum& frustum) const;
-    void draw_background() const;
+    // The first layer's pass allocates for all.
+    static const GlTexture& depth_buffer(const PassResources& resources, int layer);
 
     GlContext& context_;
-    const Scene& scene_;
-    const SceneGeometry& geometry_;
+    const GBufferSettings settings_;
     int layer_;
-    const GlTexture* first_depth_ = nullptr;
-    const GlTexture* depth_buffer_ = nullptr;
+    DepthTest test_;
+    const GlTexture& depth_buffer_;
+    const GlTexture& depth_;
+    GBufferTargets targets_;
+    GBufferDraw draw_;
     GlFramebuffer target_;
-    GLint target_planes_ = 0;
-    std::vector<const Program*> programs_;      // one per variant of the geometry
-    std::optional<FullscreenDraw> background_;  // where the environment is seen
-    std::optional<EnvironmentLight> environment_;
-    GlFramebuffer background_target_;
+    std::optional<BackgroundDraw> background_;
 };
 
+// The pass of the first layer, or of both where the method generates them at once.
 PassDeclaration declare_gbuffer(const Scene& scene, const Method& method);
-PassDeclaration declare_second_layer(const Method& method);
+// `layer` 1 to most_layers - 1.
+PassDeclaration declare_peeled_layer(const Method& method, int layer);
 
 }  // namespace plumb

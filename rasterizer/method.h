@@ -7,11 +7,30 @@ namespace plumb {
 
 enum class SourceOfStage { method, truth };  // truth: the stage's planes are handed in instead of rendered
 
+// How the layers behind the first come about: each by a geometry pass of its own (peel), or the second in the pass of
+// the first, after Mara et al. 2016 (one_pass_gbuffer.h says what each guarantees).
+enum class LayerGeneration { peel, delay, previous, predict, reproject };
+// What sends triangles to the layers of a single pass; a vertex shader needs GL_ARB_shader_viewport_layer_array.
+enum class LayerSelection { geometry_shader, vertex_shader };
+enum class SeparationUnit { metres, frustum };      // frustum: a fraction of the camera's far - near, after Nielsen 2015
+enum class DepthMapping { reversed, standard };     // of the hardware's float depth: 1 to 0, or 0 to 1
+enum class PositionSource { from_depth, stored };   // what the screen-space passes take a point from
+// normal_encoding.h has the formulas; in bytes: 4, 2, 16, 8, 4, 4, 2.
+enum class NormalFormat { oct32, oct16, rgb32f, rgb16f, rgb10a2, r11g11b10f, xy8 };
+enum class RadianceFormat { rgba32f, rgba16f, r11g11b10f };  // in bytes: 16, 8, 4
+
 struct GBufferSettings {
     SourceOfStage source = SourceOfStage::method;
-    int layers = 2;                   // 1 or 2
-    float minimum_separation = 0.1f;  // metres between the layers along the view axis
-    int guard_band = 0;               // pixels rendered beyond each side of the view
+    int layers = 2;  // 1 to 4; more than 2 by peeling only, for who reads layer3.* and layer4.*
+    LayerGeneration generation = LayerGeneration::peel;
+    LayerSelection layer_selection = LayerSelection::geometry_shader;
+    float minimum_separation = 0.1f;  // between the layers along the view axis
+    SeparationUnit separation_unit = SeparationUnit::metres;
+    int guard_band = 0;  // pixels rendered beyond each side of the view
+    DepthMapping depth_mapping = DepthMapping::reversed;
+    PositionSource position = PositionSource::from_depth;
+    NormalFormat normal_format = NormalFormat::oct32;
+    RadianceFormat radiance_format = RadianceFormat::rgba16f;  // of the lit layers that the radiosity gathers from
 };
 
 // What holds the shadows of point lights, and of spot lights too wide for a flat map (shadow_pass.h compares them).
@@ -49,6 +68,7 @@ struct BilateralBlurSettings {
     float normal_sharpness = 1;  // 1 rejects normals 90 degrees apart, 40 those 13 degrees apart
     float plane_sharpness = 1;   // rejects points off the centre's tangent plane
     bool monotonic = true;       // a weight never rises again beyond an edge
+    int depth_key_bits = 32;     // 8, 16: depths are compared as fractions of the far plane of so many bits
 };
 
 // Which formula turns taps into ambient visibility; each is named after its source (ambient_obscurance.h has them).

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include <fmt/format.h>
+
 namespace plumb {
 namespace {
 
@@ -34,9 +36,9 @@ void MotionPass::execute(const PassFrame&) {
 }
 
 PassDeclaration declare_motion(const Scene& scene, int layer) {
-    const std::string prefix(layer == 0 ? "" : second_layer_prefix);
+    const std::string prefix = layer_prefix(layer);
     PassDeclaration pass;
-    pass.name = layer == 0 ? "motion" : "motion.layer2";
+    pass.name = layer == 0 ? "motion" : fmt::format("motion.layer{}", layer + 1);
     pass.inputs = {prefix + "depth"};
     if (anything_moves(scene)) pass.inputs.push_back(prefix + "displacement");
     pass.outputs = {prefix + "motion"};

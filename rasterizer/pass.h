@@ -40,9 +40,11 @@ struct PassResources {
     std::function<const SceneGeometry&()> geometry;  // the scene's triangles on the GPU, uploaded at the first call
 
     bool is_read(std::string_view plane) const { return read.find(plane) != read.end(); }
-    // 2 where somebody reads the second layer of `plane`.
+    // The deepest layer of `plane` that somebody reads, counted from 1; 1 where nobody reads any.
     int layers_of(std::string_view plane) const {
-        return is_read(std::string(second_layer_prefix) + std::string(plane)) ? 2 : 1;
+        int layers = most_layers;
+        while (layers > 1 && !is_read(layer_prefix(layers - 1) + std::string(plane))) --layers;
+        return layers;
     }
 };
 

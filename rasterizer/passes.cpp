@@ -11,6 +11,7 @@
 #include "rasterizer/gbuffer_pass.h"
 #include "rasterizer/gl_error.h"
 #include "rasterizer/motion_pass.h"
+#include "rasterizer/one_pass_gbuffer.h"
 #include "rasterizer/radiosity.h"
 #include "rasterizer/shadow_pass.h"
 #include "rasterizer/truth_pass.h"
@@ -26,11 +27,20 @@ void require(bool condition, const Method& method, const std::string& problem) {
 
 void validate(const Method& method) {
     const GBufferSettings& gbuffer = method.gbuffer;
-    require(gbuffer.layers == 1 || gbuffer.layers == 2, method,
-            fmt::format("gbuffer.layers is {}; it can be 1 or 2", gbuffer.layers));
+    require(gbuffer.layers >= 1 && gbuffer.layers <= most_layers, method,
+            fmt::format("gbuffer.layers is {}; it can be 1 to {}", gbuffer.layers, most_layers));
+    require(gbuffer.generation == LayerGeneration::peel || gbuffer.source == SourceOfStage::truth || gbuffer.layers == 2,
+            method,
+            fmt::format("gbuffer.generation is \"{}\", which draws 2 layers, and gbuffer.layers is {}; set it to 2, or "
+                        "gbuffer.generation to \"peel\"",
+                        to_string(gbuffer.generation), gbuffer.layers));
     require(
         gbuffer.minimum_separation >= 0.0f && std::isfinite(gbuffer.minimum_separation), method,
-        fmt::format("gbuffer.minimum_separation is {}; it must be zero or more metres", gbuffer.minimum_separation));
+        fmt::format("gbuffer.minimum_separation is {}; it must be zero or more", gbuffer.minimum_separation));
+    require(gbuffer.separation_unit == SeparationUnit::metres || gbuffer.minimum_separation < 1.0f, method,
+            fmt::format("gbuffer.minimum_separation is {} of the frustum; it must be less than the whole of it (or set "
+                        "gbuffer.separation_unit to \"metres\")",
+                        gbuffer.minimum_separation));
     require(gbuffer.guard_band >= 0 && gbuffer.guard_band <= 4096, method,
             fmt::format("gbuffer.guard_band is {}; it must lie between 0 and 4096 pixels", gbuffer.guard_band));
     const bool any_truth = gbuffer.source == SourceOfStage::truth || method.direct.source == SourceOfStage::truth;
@@ -63,9 +73,8 @@ std::vector<PassDeclaration> declare_passes(const Scene& scene, const Method& me
     };
     passes.push_back(declare_true_gbuffer(method));
     passes.push_back(declare_gbuffer(scene, method));
-    passes.push_back(declare_second_layer(method));
-    passes.push_back(declare_motion(scene, 0));
-    passes.push_back(declare_motion(scene, 1));
+    for (int layer = 1; layer < most_layers; ++layer) passes.push_back(declare_peeled_layer(method, layer));
+    for (int layer = 0; layer < most_layers; ++layer) passes.push_back(declare_motion(scene, layer));
     add_all(declare_depth_mip_chain());
     add_all(declare_ambient_obscurance(method, quantities));
     passes.push_back(declare_shadows(lights, method));

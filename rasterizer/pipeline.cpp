@@ -4,7 +4,9 @@
 
 #include <fmt/format.h>
 
+#include "rasterizer/gbuffer_planes.h"
 #include "rasterizer/gl_error.h"
+#include "rasterizer/normal_encoding.h"
 #include "rasterizer/pass_plan.h"
 #include "rasterizer/pass_timer.h"
 #include "rasterizer/passes.h"
@@ -37,7 +39,7 @@ struct Pipeline::Implementation {
           declarations(declare_passes(scene, method, quantities)),
           plan(plan_passes(declarations, planes_to_make(quantities))),
           planes(context, width + 2 * method.gbuffer.guard_band, height + 2 * method.gbuffer.guard_band),
-          programs(context),
+          programs(context, normal_defines(normal_format_of(method))),
           view_uniforms(context),
           timer(context, plan.order.size()) {
         context.make_current();
@@ -66,10 +68,12 @@ struct Pipeline::Implementation {
         const Moment& previous = request.previous ? *request.previous : request.now;
         const View wide = view.with_guard_band(guard_band);
         const View wide_previous = previous.view.with_guard_band(guard_band);
-        const View wide_next =
-            (request.next ? request.next->view : extrapolate(previous.view, view)).with_guard_band(guard_band);
+        // Who predicts the next frame must not be told it.
+        const bool predicts = method.gbuffer.generation == LayerGeneration::predict;
+        const Moment* next = request.next && !predicts ? &*request.next : nullptr;
+        const View wide_next = (next ? next->view : extrapolate(previous.view, view)).with_guard_band(guard_band);
         view_uniforms.update(wide, wide_previous, guard_band, &wide_next);
-        if (geometry) geometry->move_to(request.now, previous, request.next ? &*request.next : nullptr);
+        if (geometry) geometry->move_to(request.now, previous, next);
         const PassFrame frame{wide,       wide_previous,         request.truth,
                               &wide_next, rendered_ == previous, foretold_ == request.now};
         // Whatever throws below leaves no history.
@@ -125,6 +129,15 @@ Pipeline::~Pipeline() = default;
 
 const std::vector<PassDecision>& Pipeline::decisions() const { return implementation_->plan.decisions; }
 
+std::size_t Pipeline::gbuffer_bytes_per_pixel() const {
+    std::size_t bytes = 0;
+    for (const auto& [name, texture] : implementation_->planes.all()) {
+        if (belongs_to_gbuffer(name))
+            bytes += bytes_per_texel(texture.format()) * static_cast<std::size_t>(texture.layers());
+    }
+    return bytes;
+}
+
 std::string_view Pipeline::timer_description() const { return implementation_->timer.description(); }
 
 RasterResult Pipeline::render(const FrameRequest& request) {
@@ -136,7 +149,8 @@ RasterResult Pipeline::render(const FrameRequest& request) {
     for (const PassTiming& timing : result.timings) result.milliseconds += timing.milliseconds;
     result.frame = Frame(view.width(), view.height());
     for (const std::string& plane : self.quantities.planes) {
-        result.frame.set(plane, read_plane(self.planes, plane, view, self.method.gbuffer.guard_band));
+        result.frame.set(
+            plane, read_plane(self.planes, plane, view, self.method.gbuffer.guard_band, normal_format_of(self.method)));
     }
     result.frame.facts["renderer"] = self.context.info().renderer;
     result.frame.facts["method"] = self.method.name;

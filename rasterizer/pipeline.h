@@ -1,6 +1,7 @@
 // The real-time side: a list of passes that renders the wanted planes of a view with a method.
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -54,6 +55,9 @@ public:
     // The same where the instances stay as the scene has them.
     RasterResult render(const View& view, const View* previous = nullptr, const Frame* truth = nullptr);
     std::vector<PassTiming> time_passes(const View& view, const Frame* truth = nullptr);
+    // Bytes of the G-buffer's textures per pixel, over all layers: planes, lit radiance, the hardware's depth and what
+    // is kept for the next frame, as far as the wanted planes need them.
+    std::size_t gbuffer_bytes_per_pixel() const;
     // How the passes are timed: "GPU timer queries" or "glFinish and steady clock".
     std::string_view timer_description() const;
 

@@ -8,17 +8,7 @@
 namespace plumb {
 namespace {
 
-struct PlaneName {
-    int layer;
-    std::string base;
-};
-
-PlaneName split(const std::string& plane) {
-    if (plane.starts_with(second_layer_prefix)) return {1, plane.substr(second_layer_prefix.size())};
-    return {0, plane};
-}
-
-int channels_of(const std::string& base) {
+int channels_of_plane(const std::string& base) {
     if (base == "depth" || base == "ao" || base == "confidence") return 1;
     if (base == "motion") return 2;
     return 3;
@@ -31,27 +21,31 @@ void put(Image& image, int x, int y, const glm::vec3& value) {
 }  // namespace
 
 std::vector<std::string> planes_behind(const std::string& plane) {
-    const auto [layer, base] = split(plane);
-    const std::string prefix(layer == 0 ? "" : second_layer_prefix);
+    const auto [layer, base] = split_layer(plane);
+    const std::string prefix = layer_prefix(layer);
     if (base == "position") return {prefix + "depth"};
     if (base == "normal") return {prefix + "depth", plane};
     return {plane};
 }
 
-Image read_plane(const PlaneTextures& planes, const std::string& plane, const View& view, int guard_band) {
-    const auto [layer, base] = split(plane);
+Image read_plane(const PlaneTextures& planes, const std::string& plane, const View& view, int guard_band,
+                 NormalFormat normal_format) {
+    const auto [layer, base] = split_layer(plane);
     if (base != "normal" && base != "position")
-        return read_back(planes.get(base), layer, channels_of(base), guard_band);
+        return read_back(planes.get(base), layer, channels_of_plane(base), guard_band);
 
     const Image depth = read_back(planes.get("depth"), layer, 1, guard_band);
     Image result(depth.width(), depth.height(), 3);
-    const Image encoded = base == "normal" ? read_back(planes.get("normal"), layer, 2, guard_band) : Image();
+    const int channels = channels_of(normal_format);
+    const Image encoded = base == "normal" ? read_back(planes.get("normal"), layer, channels, guard_band) : Image();
+    const glm::mat3 world_from_camera(view.camera().world_from_camera);
     for (int y = 0; y < depth.height(); ++y) {
         for (int x = 0; x < depth.width(); ++x) {
             const float d = depth.at(x, y);
             if (std::isinf(d)) continue;
             if (base == "normal") {
-                put(result, x, y, decode_normal({encoded.at(x, y, 0), encoded.at(x, y, 1)}));
+                const glm::vec3 texel(encoded.at(x, y, 0), encoded.at(x, y, 1), encoded.at(x, y, channels - 1));
+                put(result, x, y, normal_of_texel(normal_format, texel, world_from_camera));
             } else {
                 const glm::vec3 p =
                     view.camera_space_point(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f, d);

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "frames/image.h"
+#include "rasterizer/method.h"
 #include "rasterizer/plane_textures.h"
 #include "scenes/camera.h"
 
@@ -14,6 +15,7 @@ namespace plumb {
 std::vector<std::string> planes_behind(const std::string& plane);
 
 // `view` is the one without guard band.
-Image read_plane(const PlaneTextures& planes, const std::string& plane, const View& view, int guard_band);
+Image read_plane(const PlaneTextures& planes, const std::string& plane, const View& view, int guard_band,
+                 NormalFormat normal_format);
 
 }  // namespace plumb

@@ -6,6 +6,16 @@
 
 namespace plumb {
 
+std::string layer_prefix(int layer) { return layer == 0 ? "" : fmt::format("layer{}.", layer + 1); }
+
+LayeredName split_layer(std::string_view plane) {
+    for (int layer = 1; layer < most_layers; ++layer) {
+        const std::string prefix = layer_prefix(layer);
+        if (plane.starts_with(prefix)) return {layer, std::string(plane.substr(prefix.size()))};
+    }
+    return {0, std::string(plane)};
+}
+
 GlTexture& PlaneTextures::create(const std::string& name, GLenum format, int layers, int levels) {
     return adopt(name, GlTexture::array(context_, format, width_, height_, layers, levels));
 }

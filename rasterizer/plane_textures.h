@@ -14,6 +14,15 @@
 namespace plumb {
 
 constexpr std::string_view second_layer_prefix = "layer2.";
+constexpr int most_layers = 4;
+
+// "" for layer 0, "layer2." for layer 1...
+std::string layer_prefix(int layer);
+struct LayeredName {
+    int layer;  // from 0
+    std::string base;
+};
+LayeredName split_layer(std::string_view plane);
 
 class PlaneTextures {
 public:
@@ -30,6 +39,8 @@ public:
     bool has(std::string_view name) const { return textures_.find(name) != textures_.end(); }
     // Throws GlError that lists the planes there are.
     const GlTexture& get(std::string_view name) const;
+    // By name.
+    const std::map<std::string, GlTexture, std::less<>>& all() const { return textures_; }
 
 private:
     GlContext& context_;

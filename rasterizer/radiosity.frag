@@ -31,7 +31,7 @@ vec4 received(Tap tap, int layer, vec3 centre, vec3 camera_normal) {
     // The shaded point itself has no direction; rounding would make one up.
     bool hit = !is_background(tap_depth) && cosine > 0.0 && square > 1e-12 * centre.z * centre.z;
 #if TEST_TAP_NORMAL
-    vec3 tap_normal = decode_normal(texelFetch(normal, ivec3(tap.source, layer), 0).xy);
+    vec3 tap_normal = normal_of_texel(texelFetch(normal, ivec3(tap.source, layer), 0));
     hit = hit && -dot(world_space_direction(direction), tap_normal) > 0.01;
 #else
     hit = hit && near;
@@ -46,7 +46,7 @@ void main() {
     irradiance = vec4(0.0);
     if (is_background(centre_depth)) return;
 
-    vec3 camera_normal = camera_space_direction(decode_normal(texelFetch(normal, ivec3(pixel, 0), 0).xy));
+    vec3 camera_normal = camera_space_direction(normal_of_texel(texelFetch(normal, ivec3(pixel, 0), 0)));
     vec3 centre = camera_space_point_at(pixel, centre_depth);
     uint jitter = spiral_jitter(pixel);
     vec2 spin = spiral_spin(pixel, jitter);

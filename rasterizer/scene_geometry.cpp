@@ -272,7 +272,7 @@ void SceneGeometry::bind_textures(const Material& material, const MaterialVarian
     if (variant.alpha_texture) textures_[material.alpha_texture].bind(3);
 }
 
-void SceneGeometry::draw(const SceneDraw& draw, GLenum mode) const {
+void SceneGeometry::draw(const SceneDraw& draw, GLenum mode, int copies) const {
     const GladGLContext& gl = context_.gl;
     gl.BindBufferRange(GL_UNIFORM_BUFFER, instance_binding, instances_.id(),
                        static_cast<GLintptr>(static_cast<std::size_t>(draw.instance) * instance_stride_),
@@ -281,7 +281,7 @@ void SceneGeometry::draw(const SceneDraw& draw, GLenum mode) const {
     // OpenGL takes the offset into the bound buffer in the place of a pointer.
     // NOLINTNEXTLINE(performance-no-int-to-ptr)
     const auto* offset = reinterpret_cast<const void*>(draw.first_index * sizeof(std::uint32_t));
-    gl.DrawElementsBaseVertex(mode, draw.index_count, GL_UNSIGNED_INT, offset, draw.first_vertex);
+    gl.DrawElementsInstancedBaseVertex(mode, draw.index_count, GL_UNSIGNED_INT, offset, copies, draw.first_vertex);
 }
 
 }  // namespace plumb

@@ -64,7 +64,7 @@ public:
     // Binds the textures that `variant` reads to units 0 to 3 (material.glsl).
     void bind_textures(const Material& material, const MaterialVariant& variant) const;
     // Draws with the current program, as triangles or as patches of them; bind() comes first.
-    void draw(const SceneDraw& draw, GLenum mode = GL_TRIANGLES) const;
+    void draw(const SceneDraw& draw, GLenum mode = GL_TRIANGLES, int copies = 1) const;
 
     static constexpr GLuint first_free_texture_unit = 4;
 

@@ -183,7 +183,11 @@ const Program& ProgramCache::get(const std::vector<std::string>& files, const Sh
     std::string key = fmt::format("{}", fmt::join(files, "+"));
     for (const auto& [name, value] : defines) key += fmt::format("|{}={}", name, value);
     std::unique_ptr<Program>& program = programs_[key];
-    if (!program) program = std::make_unique<Program>(context_, files, defines);
+    if (!program) {
+        ShaderDefines all = common_;
+        all.insert(all.end(), defines.begin(), defines.end());
+        program = std::make_unique<Program>(context_, files, all);
+    }
     return *program;
 }
 

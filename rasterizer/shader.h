@@ -1,7 +1,8 @@
 // Shader programs from embedded files.
 //
 // Shaders lie beside their pass (*.vert, *.tesc, *.tese, *.geom, *.frag, *.comp, shared parts *.glsl) and are compiled
-// into the library. The loader writes the `#version` line and the defines, and resolves `#include "file.glsl"` (each file once
+// into the
+// library. The loader writes the `#version` line and the defines, and resolves `#include "file.glsl"` (each file once
 // per shader) with #line directives, so that a compile error names the very file and line.
 #pragma once
 
@@ -65,11 +66,14 @@ private:
 // Programs by files and defines, so that passes that differ only in their targets share one.
 class ProgramCache {
 public:
-    explicit ProgramCache(GlContext& context) : context_(context) {}
+    // `common` is defined in every shader.
+    explicit ProgramCache(GlContext& context, ShaderDefines common = {})
+        : context_(context), common_(std::move(common)) {}
     const Program& get(const std::vector<std::string>& files, const ShaderDefines& defines = {});
 
 private:
     GlContext& context_;
+    ShaderDefines common_;
     std::map<std::string, std::unique_ptr<Program>> programs_;
 };
 

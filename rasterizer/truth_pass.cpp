@@ -10,10 +10,6 @@
 namespace plumb {
 namespace {
 
-std::string_view without_layer(std::string_view plane) {
-    return plane.starts_with(second_layer_prefix) ? plane.substr(second_layer_prefix.size()) : plane;
-}
-
 GLenum format_of(std::string_view plane) {
     if (plane == "depth") return GL_R32F;
     if (plane == "normal") return GL_RG16;
@@ -37,10 +33,9 @@ Image encoded_normals(const Image& normals) {
 TruthPass::TruthPass(const PassResources& resources, std::vector<std::string> planes) {
     for (std::string& plane : planes) {
         if (!resources.is_read(plane)) continue;
-        const std::string base(without_layer(plane));
+        const auto [layer, base] = split_layer(plane);
         if (!resources.planes.has(base)) resources.planes.create(base, format_of(base), resources.layers_of(base));
-        const bool second = plane != base;
-        uploads_.push_back({std::move(plane), &resources.planes.get(base), second ? 1 : 0});
+        uploads_.push_back({std::move(plane), &resources.planes.get(base), layer});
     }
 }
 
@@ -59,7 +54,7 @@ void TruthPass::execute(const PassFrame& frame) {
                                           image.height(), upload_one.texture->width(), upload_one.texture->height()));
         }
         upload(*upload_one.texture, upload_one.layer,
-               without_layer(upload_one.plane) == "normal" ? encoded_normals(image) : image);
+               split_layer(upload_one.plane).base == "normal" ? encoded_normals(image) : image);
     }
 }
 
@@ -67,8 +62,8 @@ PassDeclaration declare_true_gbuffer(const Method& method) {
     PassDeclaration pass;
     pass.name = "gbuffer.truth";
     pass.outputs = {"depth", "normal", "albedo", "emission"};
-    if (method.gbuffer.layers == 2) {
-        for (const char* plane : {"layer2.depth", "layer2.normal", "layer2.albedo"}) pass.outputs.emplace_back(plane);
+    for (int layer = 1; layer < method.gbuffer.layers; ++layer) {
+        for (const char* plane : {"depth", "normal", "albedo"}) pass.outputs.push_back(layer_prefix(layer) + plane);
     }
     pass.create = [planes = pass.outputs](const PassResources& resources) {
         return std::make_unique<TruthPass>(resources, planes);

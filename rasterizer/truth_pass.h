@@ -23,7 +23,7 @@ private:
     std::vector<Upload> uploads_;
 };
 
-// The G-buffer (both layers where the method has two) where gbuffer.source is "truth".
+// The G-buffer (all layers of the method) where gbuffer.source is "truth".
 PassDeclaration declare_true_gbuffer(const Method& method);
 // Direct light of the first layer where direct.source is "truth". No reference holds light of the second layer: the
 // method lights that one itself.

@@ -206,8 +206,8 @@ TEST_P(PipelineTest, ImpossibleMethodsSayWhatToChange) {
     method.gbuffer.layers = 1;
     EXPECT_THAT(make(method, {"layer2.depth"}), HasSubstr("gbuffer.layers is 1"));
     EXPECT_THAT(make(method, {"ao"}), HasSubstr("gbuffer.layers is 1"));  // ao.layers is 2
-    method.gbuffer.layers = 3;
-    EXPECT_THAT(make(method, {"depth"}), HasSubstr("gbuffer.layers is 3"));
+    method.gbuffer.layers = 5;
+    EXPECT_THAT(make(method, {"depth"}), HasSubstr("gbuffer.layers is 5"));
     method = small_method();
     method.gbuffer.source = SourceOfStage::truth;
     method.gbuffer.guard_band = 8;

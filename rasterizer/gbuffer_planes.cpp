@@ -1,0 +1,90 @@
+#include "rasterizer/gbuffer_planes.h"
+
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+
+#include "rasterizer/normal_encoding.h"
+
+namespace plumb {
+namespace {
+
+struct GBufferPlane {
+    std::string_view name;
+    const char* location;  // define of gbuffer.frag; null: always location 0
+};
+constexpr std::array<GBufferPlane, 6> gbuffer_planes = {{{"depth", nullptr},
+                                                         {"normal", "WRITE_NORMAL"},
+                                                         {"albedo", "WRITE_ALBEDO"},
+                                                         {"emission", "WRITE_EMISSION"},
+                                                         {"displacement", "WRITE_DISPLACEMENT"},
+                                                         {"camera_position", "WRITE_POSITION"}}};
+
+GLenum format_of(std::string_view plane, const Method& method) {
+    if (plane == "depth") return GL_R32F;
+    if (plane == "normal") return texture_format(method.gbuffer.normal_format);
+    return plane == "displacement" || plane == "camera_position" ? GL_RGBA32F : GL_RGBA16F;
+}
+
+bool exists(std::string_view plane, const Method& method) {
+    return plane != "camera_position" || method.gbuffer.position == PositionSource::stored;
+}
+
+}  // namespace
+
+std::vector<std::string> gbuffer_outputs(const Method& method, int layer) {
+    std::vector<std::string> names;
+    for (const GBufferPlane& plane : gbuffer_planes) {
+        if (exists(plane.name, method)) names.push_back(layer_prefix(layer) + std::string(plane.name));
+    }
+    return names;
+}
+
+bool any_layer_is_read(const PassResources& resources, std::string_view plane) {
+    return resources.is_read(plane) || resources.layers_of(plane) > 1;
+}
+
+GlTexture& create_gbuffer_planes(const PassResources& resources, int depth_layers, int least_layers) {
+    PlaneTextures& planes = resources.planes;
+    GlTexture& depth = planes.create("depth", GL_R32F, depth_layers);
+    for (const GBufferPlane& plane : gbuffer_planes) {
+        const std::string name(plane.name);
+        if (name == "depth" || !any_layer_is_read(resources, name)) continue;
+        planes.create(name, format_of(name, resources.method), std::max(least_layers, resources.layers_of(name)));
+    }
+    return depth;
+}
+
+GBufferTargets gbuffer_targets(const PassResources& resources, const GlTexture& depth, int layer) {
+    GBufferTargets targets;
+    for (const GBufferPlane& plane : gbuffer_planes) {
+        const std::string name(plane.name);
+        if (name == "depth") {
+            targets.colours.push_back({&depth, layer});
+            continue;
+        }
+        if (layer < 0 ? !any_layer_is_read(resources, name) : !resources.is_read(layer_prefix(layer) + name)) continue;
+        targets.defines.emplace_back(plane.location, fmt::format("{}", targets.colours.size()));
+        targets.colours.push_back({&resources.planes.get(name), layer});
+    }
+    return targets;
+}
+
+float separation_in_metres(const GBufferSettings& settings, const Camera& camera) {
+    const float unit =
+        settings.separation_unit == SeparationUnit::frustum ? camera.far_plane - camera.near_plane : 1.0f;
+    return settings.minimum_separation * unit;
+}
+
+GLenum texture_format(RadianceFormat format) {
+    constexpr std::array<GLenum, 3> formats{GL_RGBA32F, GL_RGBA16F, GL_R11F_G11F_B10F};
+    return formats.at(static_cast<std::size_t>(format));
+}
+
+bool belongs_to_gbuffer(std::string_view texture) {
+    return texture == "direct" || texture == gbuffer_depth_buffer || texture == gbuffer_history ||
+           std::ranges::find(gbuffer_planes, texture, &GBufferPlane::name) != gbuffer_planes.end();
+}
+
+}  // namespace plumb

@@ -1,0 +1,53 @@
+// The planes of the G-buffer: what they hold, in which formats, and how many bytes they take.
+//
+// Array textures, layer k of the G-buffer in layer k. Of these only the ones that somebody reads exist:
+//
+//   depth            R32F       metres along -Z, +infinity where nothing is
+//   normal           normal_encoding.h has the formats; turned to the viewer
+//   albedo           RGBA16F
+//   emission         RGBA16F    in the first layer also the environment's radiance where nothing is in front of it
+//   displacement     RGBA32F    where the surface point of an instance that moves was in the frame before minus where
+//   it
+//                               is, camera space of now, metres
+//   camera_position  RGBA32F    camera space; only where the method stores positions (gbuffer.position)
+//
+// The hardware's depth buffer, which is no plane, is 32-bit float.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "rasterizer/pass.h"
+
+namespace plumb {
+
+// The names of the planes of `layer`, counted from 0.
+std::vector<std::string> gbuffer_outputs(const Method& method, int layer);
+
+bool any_layer_is_read(const PassResources& resources, std::string_view plane);
+
+// Allocates `depth` with `depth_layers` layers, and the other planes that somebody reads with at least `least_layers`.
+// Returns `depth`.
+GlTexture& create_gbuffer_planes(const PassResources& resources, int depth_layers, int least_layers);
+
+// What a program that draws into the planes is made from.
+struct GBufferTargets {
+    std::vector<GlAttachment> colours;  // `depth` first
+    ShaderDefines defines;              // where each output goes
+};
+// `layer` -1: all layers at once. `depth` may be another texture than the plane of that name.
+GBufferTargets gbuffer_targets(const PassResources& resources, const GlTexture& depth, int layer);
+
+// Metres along the view axis.
+float separation_in_metres(const GBufferSettings& settings, const Camera& camera);
+
+// The format of lit radiance.
+GLenum texture_format(RadianceFormat format);
+
+// True for the textures that make up the G-buffer: its planes, the light of its layers, its depth buffer and what it
+// keeps for the next frame.
+bool belongs_to_gbuffer(std::string_view texture);
+constexpr std::string_view gbuffer_depth_buffer = "gbuffer.depth_buffer";
+constexpr std::string_view gbuffer_history = "gbuffer.history";
+
+}  // namespace plumb
