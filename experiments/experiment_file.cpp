@@ -170,7 +170,9 @@ void make_quick(Experiment& experiment) {
 
 Method method_in_scene(const Method& method, const ExperimentScene& scene, const std::string& source) {
     Method result = method;
-    if (result.gbuffer.layers > 1) result.gbuffer.minimum_separation = scene.minimum_separation;
+    // A method that means a fraction of the frustum keeps its own.
+    if (result.gbuffer.layers > 1 && result.gbuffer.separation_unit == SeparationUnit::metres)
+        result.gbuffer.minimum_separation = scene.minimum_separation;
     if (result.radiosity.enabled) result.radiosity.radius = scene.indirect_radius;
     override_method(result, scene.method_overrides, source);
     return result;

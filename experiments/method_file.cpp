@@ -46,6 +46,7 @@ void add_blur(std::vector<MethodParameter>& parameters, const std::string& prefi
                                             {prefix + "normal_sharpness", &blur.normal_sharpness, 0, 1e6},
                                             {prefix + "plane_sharpness", &blur.plane_sharpness, 0, 1e6},
                                             {prefix + "monotonic", &blur.monotonic},
+                                            {prefix + "depth_key_bits", &blur.depth_key_bits, 8, 32},
                                         });
 }
 
@@ -58,6 +59,24 @@ std::string shadow_reason(const ShadowSettings& shadow, std::string_view name) {
     }
     if (name == "direct.shadow.cube_size" && paraboloids) return "direct.shadow.point_map = \"dual_paraboloid\"";
     if (name.starts_with("direct.shadow.paraboloid_") && !paraboloids) return "direct.shadow.point_map = \"cube\"";
+    return "";
+}
+
+// The same of the G-buffer.
+std::string gbuffer_reason(const Method& method, std::string_view name) {
+    constexpr std::array of_two_layers = {"gbuffer.minimum_separation", "gbuffer.separation_unit", "gbuffer.generation",
+                                          "gbuffer.layer_selection"};
+    constexpr std::array of_rendering = {"gbuffer.separation_unit", "gbuffer.generation",    "gbuffer.layer_selection",
+                                         "gbuffer.depth_mapping",   "gbuffer.normal_format", "gbuffer.position"};
+    const GBufferSettings& gbuffer = method.gbuffer;
+    if (gbuffer.layers == 1 && std::ranges::find(of_two_layers, name) != of_two_layers.end())
+        return "gbuffer.layers = 1";
+    if (gbuffer.source == SourceOfStage::truth && std::ranges::find(of_rendering, name) != of_rendering.end())
+        return "gbuffer.source = \"truth\"";
+    if (name == "gbuffer.layer_selection" && gbuffer.generation == LayerGeneration::peel)
+        return "gbuffer.generation = \"peel\"";
+    if (name == "gbuffer.position" && !method.ao.enabled && !method.radiosity.enabled)
+        return "ao.enabled = false and radiosity.enabled = false";
     return "";
 }
 
@@ -118,9 +137,17 @@ std::vector<MethodParameter> method_parameters(Method& m) {
     const std::vector<std::string> sources = {"method", "truth"};
     std::vector<MethodParameter> parameters = {
         {"gbuffer.source", choice(m.gbuffer.source, sources)},
-        {"gbuffer.layers", &m.gbuffer.layers, 1, 2},
+        {"gbuffer.layers", &m.gbuffer.layers, 1, 4},
+        {"gbuffer.generation", choice(m.gbuffer.generation, {"peel", "delay", "previous", "predict", "reproject"})},
+        {"gbuffer.layer_selection", choice(m.gbuffer.layer_selection, {"geometry_shader", "vertex_shader"})},
         {"gbuffer.minimum_separation", &m.gbuffer.minimum_separation, 0, 1e6},
+        {"gbuffer.separation_unit", choice(m.gbuffer.separation_unit, {"metres", "frustum"})},
         {"gbuffer.guard_band", &m.gbuffer.guard_band, 0, 4096},
+        {"gbuffer.depth_mapping", choice(m.gbuffer.depth_mapping, {"reversed", "standard"})},
+        {"gbuffer.position", choice(m.gbuffer.position, {"from_depth", "stored"})},
+        {"gbuffer.normal_format",
+         choice(m.gbuffer.normal_format, {"oct32", "oct16", "rgb32f", "rgb16f", "rgb10a2", "r11g11b10f", "xy8"})},
+        {"gbuffer.radiance_format", choice(m.gbuffer.radiance_format, {"rgba32f", "rgba16f", "r11g11b10f"})},
         {"direct.source", choice(m.direct.source, sources)},
         {"direct.shadow.lamps", &m.direct.shadow.lamps},
         {"direct.shadow.point_map", choice(m.direct.shadow.point_map, {"cube", "dual_paraboloid"})},
@@ -269,7 +296,9 @@ std::string reason_without_effect(const Method& method, std::string_view name) {
     if (std::string reason = shadow_reason(method.direct.shadow, name); !reason.empty()) return reason;
     const auto blur_reason = [&](std::string_view group, const BilateralBlurSettings& blur) {
         const bool off = name.starts_with(group) && name != fmt::format("{}radius", group) && blur.radius == 0;
-        return off ? fmt::format("{}radius = 0", group) : std::string();
+        if (off) return fmt::format("{}radius = 0", group);
+        const bool no_keys = name == fmt::format("{}depth_key_bits", group) && blur.depth_sharpness == 0.0f;
+        return no_keys ? fmt::format("{}depth_sharpness = 0", group) : std::string();
     };
     if (std::string reason = blur_reason("ao.blur.", method.ao.blur); !reason.empty()) return reason;
     if (std::string reason = blur_reason("radiosity.blur.", method.radiosity.blur); !reason.empty()) return reason;
@@ -277,8 +306,7 @@ std::string reason_without_effect(const Method& method, std::string_view name) {
     if (!method.radiosity.use_mip_chain && (name == "radiosity.mip_offset" || name == "radiosity.minimum_mip_level")) {
         return "radiosity.use_mip_chain = false";
     }
-    if (name == "gbuffer.minimum_separation" && method.gbuffer.layers == 1) return "gbuffer.layers = 1";
-    return "";
+    return gbuffer_reason(method, name);
 }
 
 std::string print_parameter(const MethodParameter& parameter) {

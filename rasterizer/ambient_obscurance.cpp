@@ -6,6 +6,7 @@
 
 #include "rasterizer/depth_mip_chain.h"
 #include "rasterizer/falloff.h"
+#include "rasterizer/gbuffer_planes.h"
 #include "rasterizer/gl_error.h"
 
 namespace plumb {
@@ -95,6 +96,7 @@ std::string_view to_string(AmbientObscuranceEstimator estimator) {
 AmbientObscurancePass::AmbientObscurancePass(const PassResources& resources)
     : depth_(resources.planes.get(depth_plane(resources.method))),
       normal_(resources.planes.get("normal")),
+      position_(stored_positions(resources)),
       spiral_(resources.context, resources.method.ao.samples),
       draw_(resources.context, resources.programs, "ambient_obscurance.frag", shader_defines(resources)),
       target_(make_target(resources)),
@@ -103,6 +105,7 @@ AmbientObscurancePass::AmbientObscurancePass(const PassResources& resources)
 void AmbientObscurancePass::execute(const PassFrame&) {
     depth_.bind(0);
     normal_.bind(1);
+    if (position_) position_->bind(stored_position_unit);
     spiral_.bind();
     const InnerArea::Restriction restriction(area_);
     draw_.draw(target_);
@@ -119,6 +122,8 @@ std::vector<PassDeclaration> declare_ambient_obscurance(const Method& method, co
         .remark = fmt::format("{}, {} taps, {} layer{}", to_string(method.ao.estimator), method.ao.samples,
                               method.ao.layers, method.ao.layers == 1 ? "" : "s")};
     if (method.ao.layers > 1) pass.inputs.push_back(std::string(second_layer_prefix) + depth);
+    for (int layer = 0; stores_positions(method) && layer < method.ao.layers; ++layer)
+        pass.inputs.push_back(layer_prefix(layer) + "camera_position");
     std::vector<PassDeclaration> passes = {std::move(pass)};
     if (is_blurred(method)) {
         passes.push_back(declare_bilateral_blur({.name = "ambient obscurance blur",
@@ -126,7 +131,8 @@ std::vector<PassDeclaration> declare_ambient_obscurance(const Method& method, co
                                                  .quantity_radius = quantities.ao_radius,
                                                  .input = output_plane(method),
                                                  .output = "ao",
-                                                 .read_beyond = std::string(guard_band_reader)}));
+                                                 .read_beyond = std::string(guard_band_reader),
+                                                 .stored_positions = stores_positions(method)}));
         passes.back().disabled = passes.front().disabled;
     }
     return passes;

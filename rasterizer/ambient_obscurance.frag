@@ -13,10 +13,9 @@ layout(binding = 1) uniform sampler2DArray normal;
 
 layout(location = 0) out float visibility;
 
-// Of the point seen through the centre of `pixel` at `tap_depth`. Without a surface the depth is infinite: a point so far
-// away that its falloff is 0 does as well.
-float obscurance(ivec2 pixel, float tap_depth, vec3 centre, vec3 camera_normal) {
-    vec3 offset = camera_space_point_at(pixel, min(tap_depth, 1e12)) - centre;
+// Of the point that `pixel` shows in a layer. Without a surface it is so far away that its falloff is 0.
+float obscurance(ivec2 pixel, int layer, float tap_depth, vec3 centre, vec3 camera_normal) {
+    vec3 offset = surface_point(pixel, layer, tap_depth) - centre;
     float square = dot(offset, offset);
     float height = max(0.0, dot(offset, camera_normal) - BIAS);
 #if ESTIMATOR == SAO2012
@@ -48,7 +47,7 @@ void main() {
     if (is_background(centre_depth) || radius_pixels < 1.0) return;
 
     vec3 camera_normal = camera_space_direction(normal_of_texel(texelFetch(normal, ivec3(pixel, 0), 0)));
-    vec3 centre = camera_space_point_at(pixel, centre_depth);
+    vec3 centre = surface_point(pixel, 0, centre_depth);
     vec2 spin = spiral_spin(pixel, SPIRAL_JITTER_HALF);
     float tap_spacing = radius_pixels / float(SPIRAL_SAMPLES);
 
@@ -62,9 +61,9 @@ void main() {
         int level = mip_level(distance, MIP_OFFSET, 0, COARSEST_LEVEL);
         ivec2 texel = texel_at(tap, level);
         ivec2 source = pixel_of_texel(texel, level);
-        float larger = obscurance(source, texelFetch(depth, ivec3(texel, 0), level).r, centre, camera_normal);
+        float larger = obscurance(source, 0, texelFetch(depth, ivec3(texel, 0), level).r, centre, camera_normal);
 #if LAYERS == 2
-        larger = max(larger, obscurance(source, texelFetch(depth, ivec3(texel, 1), level).r, centre, camera_normal));
+        larger = max(larger, obscurance(source, 1, texelFetch(depth, ivec3(texel, 1), level).r, centre, camera_normal));
 #endif
         sum += is_inside(tap) ? larger : 0.0;
     }

@@ -46,6 +46,7 @@ public:
 private:
     const GlTexture& depth_;
     const GlTexture& normal_;
+    const GlTexture* position_;  // where positions are stored
     SampleSpiral spiral_;
     FullscreenDraw draw_;
     GlFramebuffer target_;

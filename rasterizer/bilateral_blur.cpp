@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "rasterizer/gbuffer_planes.h"
 #include "rasterizer/gl_error.h"
 
 namespace plumb {
@@ -17,6 +18,10 @@ void require_sound(const BilateralBlurRequest& request) {
             fmt::format("{}: blur radius {} and step {} are out of range; use a radius of 0 (off) to 64 and "
                         "a step of at least 1",
                         request.name, settings.radius, settings.step));
+    }
+    if (settings.depth_key_bits != 8 && settings.depth_key_bits != 16 && settings.depth_key_bits != 32) {
+        throw MethodError(
+            fmt::format("{}: the blur's depth_key_bits is {}; use 8, 16 or 32", request.name, settings.depth_key_bits));
     }
     for (const float sharpness : {settings.depth_sharpness, settings.normal_sharpness, settings.plane_sharpness}) {
         if (!(sharpness >= 0.0f && std::isfinite(sharpness))) {
@@ -39,14 +44,17 @@ std::string gaussian_weights(int radius) {
 ShaderDefines defines_along(const char* direction, const BilateralBlurRequest& request) {
     require_sound(request);
     const BilateralBlurSettings& settings = request.settings;
-    return {{"DIRECTION", direction},
-            {"BLUR_RADIUS", std::to_string(settings.radius)},
-            {"STEP", std::to_string(settings.step)},
-            {"MONOTONIC", settings.monotonic ? "1" : "0"},
-            {"DEPTH_SHARPNESS", shader_literal(settings.depth_sharpness / request.quantity_radius)},
-            {"NORMAL_SHARPNESS", shader_literal(settings.normal_sharpness)},
-            {"PLANE_SHARPNESS", shader_literal(settings.plane_sharpness)},
-            {"GAUSSIAN_WEIGHTS", gaussian_weights(settings.radius)}};
+    ShaderDefines defines = {{"DIRECTION", direction},
+                             {"BLUR_RADIUS", std::to_string(settings.radius)},
+                             {"STEP", std::to_string(settings.step)},
+                             {"MONOTONIC", settings.monotonic ? "1" : "0"},
+                             {"DEPTH_SHARPNESS", shader_literal(settings.depth_sharpness / request.quantity_radius)},
+                             {"NORMAL_SHARPNESS", shader_literal(settings.normal_sharpness)},
+                             {"PLANE_SHARPNESS", shader_literal(settings.plane_sharpness)},
+                             {"GAUSSIAN_WEIGHTS", gaussian_weights(settings.radius)}};
+    if (settings.depth_key_bits < 32)
+        defines.emplace_back("DEPTH_KEYS", fmt::format("{}.0", (1 << settings.depth_key_bits) - 1));
+    return defines;
 }
 
 GlFramebuffer framebuffer_of(const GlTexture& texture) {
@@ -78,6 +86,7 @@ BilateralBlurPass::BilateralBlurPass(const PassResources& resources, const Bilat
     : noisy_(resources.planes.get(request.input)),
       depth_(resources.planes.get("depth")),
       normal_(resources.planes.get("normal")),
+      position_(stored_positions(resources)),
       half_blurred_(GlTexture::array(resources.context, noisy_.format(), noisy_.width(), noisy_.height(), 1)),
       along_rows_(resources.context, resources.programs, "bilateral_blur.frag", defines_along("ivec2(1, 0)", request)),
       along_columns_(resources.context, resources.programs, "bilateral_blur.frag",
@@ -91,6 +100,7 @@ void BilateralBlurPass::execute(const PassFrame&) {
     noisy_.bind(0);
     depth_.bind(1);
     normal_.bind(2);
+    if (position_) position_->bind(stored_position_unit);
     {
         const InnerArea::Restriction restriction(area_of_rows_);
         along_rows_.draw(half_blurred_target_);
@@ -101,12 +111,14 @@ void BilateralBlurPass::execute(const PassFrame&) {
 }
 
 PassDeclaration declare_bilateral_blur(const BilateralBlurRequest& request) {
-    return {.name = request.name,
-            .inputs = {request.input, "depth", "normal"},
-            .outputs = {request.output},
-            .create = [request](const PassResources& resources) {
-                return std::make_unique<BilateralBlurPass>(resources, request);
-            }};
+    PassDeclaration pass{.name = request.name,
+                         .inputs = {request.input, "depth", "normal"},
+                         .outputs = {request.output},
+                         .create = [request](const PassResources& resources) {
+                             return std::make_unique<BilateralBlurPass>(resources, request);
+                         }};
+    if (request.stored_positions) pass.inputs.emplace_back("camera_position");
+    return pass;
 }
 
 }  // namespace plumb

@@ -1,7 +1,8 @@
 // One direction of the edge-aware blur; bilateral_blur.h has the weights.
 //
 // Defines: DIRECTION (ivec2), BLUR_RADIUS, STEP, MONOTONIC (0, 1), DEPTH_SHARPNESS (per metre), NORMAL_SHARPNESS,
-// PLANE_SHARPNESS, GAUSSIAN_WEIGHTS (of distance 0 to BLUR_RADIUS).
+// PLANE_SHARPNESS, GAUSSIAN_WEIGHTS (of distance 0 to BLUR_RADIUS), DEPTH_KEYS (how many values a key has besides 0; none:
+// depths are compared as they are).
 
 #include "depth_mip_chain.glsl"
 #include "normal_encoding.glsl"
@@ -22,16 +23,24 @@ struct Surface {
 Surface surface_at(ivec2 pixel) {
     Surface surface;
     surface.depth = texelFetch(depth, ivec3(pixel, 0), 0).r;
-    surface.point = camera_space_point_at(pixel, min(surface.depth, 1e12));
+    surface.point = surface_point(pixel, 0, surface.depth);
     surface.normal = normal_of_texel(texelFetch(normal, ivec3(pixel, 0), 0));
     return surface;
+}
+
+float depth_key(float depth) {
+#ifdef DEPTH_KEYS
+    return floor(min(depth / far_plane, 1.0) * DEPTH_KEYS + 0.5) * (far_plane / DEPTH_KEYS);
+#else
+    return depth;
+#endif
 }
 
 float edge_weight(Surface centre, Surface tap) {
     vec3 offset = tap.point - centre.point;
     vec3 direction = world_space_direction(offset * inversesqrt(max(dot(offset, offset), 1e-30)));
     float off_plane = max(abs(dot(direction, centre.normal)), abs(dot(direction, tap.normal)));
-    float depth_weight = max(0.0, 1.0 - DEPTH_SHARPNESS * abs(tap.depth - centre.depth));
+    float depth_weight = max(0.0, 1.0 - DEPTH_SHARPNESS * abs(depth_key(tap.depth) - depth_key(centre.depth)));
     float normal_weight = max(0.0, 1.0 - NORMAL_SHARPNESS * (1.0 - dot(centre.normal, tap.normal)));
     float plane_weight = max(0.0, 1.0 - 2.0 * PLANE_SHARPNESS * off_plane);
     return is_background(tap.depth) ? 0.0 : depth_weight * normal_weight * plane_weight * plane_weight;

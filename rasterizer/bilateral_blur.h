@@ -8,9 +8,13 @@
 //     w_normal  = max(0, 1 - normal_sharpness (1 - n.n'))
 //     w_plane   = max(0, 1 - 2 plane_sharpness max(|u.n|, |u.n'|))     u: unit vector between the two points
 //
-// and, where `monotonic` is set, no edge weight (w_depth w_normal w_plane^2) larger than that of the pixels between.
-// Pixels outside the image and background have weight 0; background is left as it is. A constant image stays the same
-// bit for bit.
+// With depth_key_bits of 8 or 16, z and z' in w_depth are what a key of so many bits would hold of them, the fraction
+// of the far plane (8 bits show bands, as implementers report). Keys are made as they are compared, not stored: the
+// image is that of stored ones, the time is not.
+//
+// Where `monotonic` is set, there is no edge weight (w_depth w_normal w_plane^2) larger than that of the pixels
+// between. Pixels outside the image and background have weight 0; background is left as it is. A constant image stays
+// the same bit for bit.
 //   Source: the filters that Mara et al. ship with G3D, their constants turned into metres; the exemption from the
 //   plane weight that they grant to pixels close in space is left out: it blurs across contacts. Good for: noise of 10
 //   to 60 taps. Bad for: thin objects, whose few pixels have few neighbours.
@@ -56,6 +60,7 @@ struct BilateralBlurRequest {
     float quantity_radius = 1.0f;    // metres
     std::string input, output;       // planes
     std::string read_beyond = {};    // see InnerArea
+    bool stored_positions = false;   // the plane camera_position is read
 };
 
 class BilateralBlurPass final : public Pass {
@@ -67,6 +72,7 @@ private:
     const GlTexture& noisy_;
     const GlTexture& depth_;
     const GlTexture& normal_;
+    const GlTexture* position_;  // where positions are stored
     GlTexture half_blurred_;
     FullscreenDraw along_rows_, along_columns_;
     GlFramebuffer half_blurred_target_, target_;

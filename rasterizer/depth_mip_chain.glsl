@@ -29,6 +29,18 @@ vec3 camera_space_point_at(ivec2 pixel, float depth) {
     return depth * vec3((vec2(pixel) + 0.5) * ray_scale - tan_half, -1.0);
 }
 
+// The point of a layer that the pixel of level 0 shows at `depth`, as the method wants it: read (STORED_POSITION, which
+// gbuffer_planes.h defines) or computed. Where nothing is, a point so far away that it counts nowhere.
+#ifdef STORED_POSITION
+layout(binding = 3) uniform sampler2DArray camera_position;
+vec3 surface_point(ivec2 pixel, int layer, float depth) {
+    return is_background(depth) ? camera_space_point_at(pixel, 1e12)
+                                : texelFetch(camera_position, ivec3(pixel, layer), 0).xyz;
+}
+#else
+vec3 surface_point(ivec2 pixel, int layer, float depth) { return camera_space_point_at(pixel, min(depth, 1e12)); }
+#endif
+
 // Pixels that `radius` metres cover at a depth. Capped where only the innermost taps could lie in any image, lest pixel
 // coordinates overflow.
 float radius_in_pixels(float radius, float depth) { return min(radius * pixels_per_metre / depth, 1e7); }

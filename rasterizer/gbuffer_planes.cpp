@@ -28,7 +28,7 @@ GLenum format_of(std::string_view plane, const Method& method) {
 }
 
 bool exists(std::string_view plane, const Method& method) {
-    return plane != "camera_position" || method.gbuffer.position == PositionSource::stored;
+    return plane != "camera_position" || stores_positions(method);
 }
 
 }  // namespace
@@ -69,6 +69,20 @@ GBufferTargets gbuffer_targets(const PassResources& resources, const GlTexture& 
         targets.colours.push_back({&resources.planes.get(name), layer});
     }
     return targets;
+}
+
+bool stores_positions(const Method& method) {
+    return method.gbuffer.position == PositionSource::stored && method.gbuffer.source == SourceOfStage::method;
+}
+
+const GlTexture* stored_positions(const PassResources& resources) {
+    return resources.planes.has("camera_position") ? &resources.planes.get("camera_position") : nullptr;
+}
+
+ShaderDefines gbuffer_defines(const Method& method) {
+    ShaderDefines defines = normal_defines(normal_format_of(method));
+    if (stores_positions(method)) defines.emplace_back("STORED_POSITION", "1");
+    return defines;
 }
 
 float separation_in_metres(const GBufferSettings& settings, const Camera& camera) {

@@ -38,6 +38,14 @@ struct GBufferTargets {
 // `layer` -1: all layers at once. `depth` may be another texture than the plane of that name.
 GBufferTargets gbuffer_targets(const PassResources& resources, const GlTexture& depth, int layer);
 
+// Whether the screen-space passes read positions (depth_mip_chain.glsl); those of the truth are never stored.
+bool stores_positions(const Method& method);
+// The plane camera_position where there is one, else null, and where those passes bind it.
+const GlTexture* stored_positions(const PassResources& resources);
+constexpr GLuint stored_position_unit = 3;
+// What every shader of a pipeline must know of the G-buffer's formats.
+ShaderDefines gbuffer_defines(const Method& method);
+
 // Metres along the view axis.
 float separation_in_metres(const GBufferSettings& settings, const Camera& camera);
 

@@ -6,7 +6,7 @@
 //   rgb32f      RGBA32F            16  as it is: OpenGL need not draw into three channels                   1e-5
 //   rgb16f      RGBA16F             8  as it is                                                             0.03
 //   rgb10a2     RGB10_A2            4  n / 2 + 1/2                                                           0.1
-//   r11g11b10f  R11F_G11F_B10F      4  n / 2 + 1/2: 6 and 5 bits after the point, finer near -1              1.6
+//   r11g11b10f  R11F_G11F_B10F      4  n / 2 + 1/2: 6 and 5 bits after the point, finer near -1              2.2
 //   xy8         RG8                 2  camera space, n_xy / 2 + 1/2, n_z = sqrt(1 - n_x^2 - n_y^2)   see below
 //
 // xy8 loses the sign of n_z: a normal that leans away from the viewer comes back as its mirror image, leaning towards

@@ -39,7 +39,7 @@ struct Pipeline::Implementation {
           declarations(declare_passes(scene, method, quantities)),
           plan(plan_passes(declarations, planes_to_make(quantities))),
           planes(context, width + 2 * method.gbuffer.guard_band, height + 2 * method.gbuffer.guard_band),
-          programs(context, normal_defines(normal_format_of(method))),
+          programs(context, gbuffer_defines(method)),
           view_uniforms(context),
           timer(context, plan.order.size()) {
         context.make_current();

@@ -7,6 +7,7 @@
 
 #include "rasterizer/depth_mip_chain.h"
 #include "rasterizer/falloff.h"
+#include "rasterizer/gbuffer_planes.h"
 #include "rasterizer/gl_error.h"
 
 namespace plumb {
@@ -105,6 +106,7 @@ std::string_view to_string(RadiosityNormalisation normalisation) {
 RadiosityPass::RadiosityPass(const PassResources& resources)
     : depth_(resources.planes.get(depth_plane(resources.method))),
       normal_(resources.planes.get("normal")),
+      position_(stored_positions(resources)),
       direct_(resources.planes.get("direct")),
       spiral_(resources.context, resources.method.radiosity.samples),
       draw_(resources.context, resources.programs, "radiosity.frag", shader_defines(resources)),
@@ -114,6 +116,7 @@ RadiosityPass::RadiosityPass(const PassResources& resources)
 void RadiosityPass::execute(const PassFrame&) {
     depth_.bind(0);
     normal_.bind(1);
+    if (position_) position_->bind(stored_position_unit);
     direct_.bind(2);
     spiral_.bind();
     const InnerArea::Restriction restriction(area_);
@@ -151,13 +154,16 @@ std::vector<PassDeclaration> declare_radiosity(const Method& method) {
             gathering.inputs.push_back(std::string(second_layer_prefix) + plane);
         }
     }
+    for (int layer = 0; stores_positions(method) && layer < settings.layers; ++layer)
+        gathering.inputs.push_back(layer_prefix(layer) + "camera_position");
     std::vector<PassDeclaration> passes = {std::move(gathering)};
     if (settings.blur.radius > 0) {
         passes.push_back(declare_bilateral_blur({.name = "radiosity blur",
                                                  .settings = settings.blur,
                                                  .quantity_radius = settings.radius,
                                                  .input = gathered_plane(method),
-                                                 .output = std::string(filtered_plane)}));
+                                                 .output = std::string(filtered_plane),
+                                                 .stored_positions = stores_positions(method)}));
         passes.back().disabled = disabled;
     }
     PassDeclaration reflection{

@@ -23,7 +23,7 @@ struct Tap {
 // The light that a tap sends, before 2 pi / M; in alpha whether it counts as a hit.
 vec4 received(Tap tap, int layer, vec3 centre, vec3 camera_normal) {
     float tap_depth = texelFetch(depth, ivec3(tap.texel, layer), tap.level).r;
-    vec3 offset = camera_space_point_at(tap.source, min(tap_depth, 1e12)) - centre;
+    vec3 offset = surface_point(tap.source, layer, tap_depth) - centre;
     float square = dot(offset, offset);
     vec3 direction = offset * inversesqrt(max(square, 1e-30));
     float cosine = dot(direction, camera_normal);
@@ -47,7 +47,7 @@ void main() {
     if (is_background(centre_depth)) return;
 
     vec3 camera_normal = camera_space_direction(normal_of_texel(texelFetch(normal, ivec3(pixel, 0), 0)));
-    vec3 centre = camera_space_point_at(pixel, centre_depth);
+    vec3 centre = surface_point(pixel, 0, centre_depth);
     uint jitter = spiral_jitter(pixel);
     vec2 spin = spiral_spin(pixel, jitter);
     float tap_spacing = radius_in_pixels(RADIUS, centre_depth) / float(SPIRAL_SAMPLES);

@@ -41,6 +41,7 @@ public:
 private:
     const GlTexture& depth_;
     const GlTexture& normal_;
+    const GlTexture* position_;  // where positions are stored
     const GlTexture& direct_;
     SampleSpiral spiral_;
     FullscreenDraw draw_;

@@ -5,6 +5,13 @@
 
 namespace plumb::counterpart {
 
+// What a key of some bits holds of a depth.
+inline double depth_key(const Layers& layers, const BilateralBlurSettings& settings, double depth) {
+    if (settings.depth_key_bits == 32) return depth;
+    const double far_plane = layers.view.camera().far_plane, keys = std::pow(2.0, settings.depth_key_bits) - 1.0;
+    return std::floor(std::min(depth / far_plane, 1.0) * keys + 0.5) * far_plane / keys;
+}
+
 inline double edge_weight(const Layers& layers, const BilateralBlurSettings& settings, double radius, Pixel centre,
                           Pixel tap) {
     const double depth = depth_at(layers, 0, tap);
@@ -13,7 +20,9 @@ inline double edge_weight(const Layers& layers, const BilateralBlurSettings& set
     const glm::dvec3 n = vector_at(layers, layers.normal[0], centre), m = vector_at(layers, layers.normal[0], tap);
     const double off_plane = std::max(std::abs(glm::dot(v, n)), std::abs(glm::dot(v, m))) / glm::length(v);
     const double plane = std::max(0.0, 1.0 - 2.0 * settings.plane_sharpness * off_plane);
-    return std::max(0.0, 1.0 - settings.depth_sharpness * std::abs(depth - depth_at(layers, 0, centre)) / radius) *
+    const double step =
+        std::abs(depth_key(layers, settings, depth) - depth_key(layers, settings, depth_at(layers, 0, centre)));
+    return std::max(0.0, 1.0 - settings.depth_sharpness * step / radius) *
            std::max(0.0, 1.0 - settings.normal_sharpness * (1.0 - glm::dot(n, m))) * plane * plane;
 }
 

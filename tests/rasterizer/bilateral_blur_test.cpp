@@ -51,7 +51,8 @@ TEST_P(BilateralBlurTest, AgreesWithItsCounterpart) {
     const BilateralBlurSettings radiosity_default = RadiositySettings{}.blur;
     for (const BilateralBlurSettings& settings :
          {BilateralBlurSettings{}, radiosity_default, BilateralBlurSettings{.radius = 7, .step = 3, .monotonic = false},
-          BilateralBlurSettings{.radius = 1, .depth_sharpness = 1.0f}}) {
+          BilateralBlurSettings{.radius = 1, .depth_sharpness = 1.0f}, BilateralBlurSettings{.depth_key_bits = 16},
+          BilateralBlurSettings{.depth_sharpness = 0.5f, .depth_key_bits = 8}}) {
         for (const counterpart::Layers& layers :
              {layers_of_patches(view, floor_and_wall), counterpart::random_layers(view, 6)}) {
             SCOPED_TRACE(testing::Message() << "radius " << settings.radius << ", step " << settings.step);
@@ -166,8 +167,9 @@ TEST_P(BilateralBlurTest, DrawsTheViewWithoutItsGuardBandButReadsTheBand) {
 TEST_P(BilateralBlurTest, ParametersOutOfRangeAreRefused) {
     const counterpart::Layers layers = layers_of_patches(slanted_view(8, 8), wall);
     for (const BilateralBlurSettings& settings :
-         {BilateralBlurSettings{.radius = 65}, BilateralBlurSettings{.step = 0},
-          BilateralBlurSettings{.depth_sharpness = -1.0f}, BilateralBlurSettings{.plane_sharpness = INFINITY}}) {
+         {BilateralBlurSettings{.radius = 65}, BilateralBlurSettings{.depth_key_bits = 12},
+          BilateralBlurSettings{.step = 0}, BilateralBlurSettings{.depth_sharpness = -1.0f},
+          BilateralBlurSettings{.plane_sharpness = INFINITY}}) {
         EXPECT_THROW(blur(context(), layers, settings, noise(8, 8, 1)), MethodError);
     }
 }
