@@ -8,9 +8,11 @@
 #include <CLI/CLI.hpp>
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include "experiments/pictures.h"
+#include "frames/deep_exr.h"
 #include "frames/exr.h"
 #include "frames/image_error.h"
 #include "frames/picture.h"
@@ -39,6 +41,8 @@ void ViewOptions::add_to(CLI::App& command, const std::vector<std::string>& defa
         ->delimiter(',')
         ->capture_default_str();
     command.add_option("-o,--output", output, "Folder for the files")->capture_default_str();
+    command.add_flag("--deep", deep,
+                     "Also write the layers as a deep OpenEXR file; wants the planes depth, layer2.depth...");
     const std::string group = "Quantities";
     command.add_option("--ao-radius", quantities.ao_radius, "Reach of ambient visibility, metres")
         ->check(CLI::PositiveNumber)
@@ -104,6 +108,12 @@ void write_frame_files(const Frame& frame, const ViewOptions& options, const std
     const auto exr = options.output / (stem + ".exr");
     write_exr(exr, frame);
     fmt::print("{}\n", exr.string());
+    if (options.deep) {
+        const auto deep = options.output / (stem + ".deep.exr");
+        const std::vector<std::string> left_out = write_deep_exr(deep, frame);
+        fmt::print("{}{}\n", deep.string(),
+                   left_out.empty() ? "" : fmt::format(" (without {}: not of every layer)", fmt::join(left_out, ", ")));
+    }
     for (const std::string& plane : frame.plane_names()) {
         if (plane.starts_with("half_") || plane.starts_with("variance.")) continue;
         PictureSettings look;

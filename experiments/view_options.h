@@ -24,6 +24,7 @@ struct ViewOptions {
     std::string ao_falloff = "quadratic";
     std::string indirect_falloff = "hard";
     std::filesystem::path output = "out";
+    bool deep = false;  // write a deep OpenEXR file too
 
     void add_to(CLI::App& command, const std::vector<std::string>& default_planes);
     Quantities read_quantities() const;
@@ -37,8 +38,8 @@ struct ViewOptions {
 // after hours of work.
 void require_writable_folder(const std::filesystem::path& folder);
 
-// Writes OUTPUT/SCENE.VIEW.NAME.exr and one PNG per plane (no half-buffers or variances), and prints their paths.
-// Radiance is exposed so that its 99th percentile is nearly white.
+// Writes OUTPUT/SCENE.VIEW.NAME.exr, with --deep also .deep.exr, and one PNG per plane (no half-buffers or variances),
+// and prints their paths. Radiance is exposed so that its 99th percentile is nearly white.
 void write_frame_files(const Frame& frame, const ViewOptions& options, const std::string& view,
                        const std::string& name);
 

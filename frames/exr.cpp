@@ -6,73 +6,27 @@
 #include <cstdio>
 #include <cstring>
 #include <map>
-#include <mutex>
 #include <optional>
-#include <thread>
 
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
-#include <OpenEXR/ImfIO.h>
 #include <OpenEXR/ImfInputPart.h>
 #include <OpenEXR/ImfMultiPartInputFile.h>
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfStringAttribute.h>
-#include <OpenEXR/ImfThreading.h>
 #include <fmt/format.h>
 
-#include "frames/atomic_file.h"
 #include "frames/channel_names.h"
+#include "frames/exr_writing.h"
 #include "frames/image_error.h"
 
 namespace plumb {
 namespace {
 
-constexpr std::string_view fact_prefix = "plumbline:";
-constexpr std::size_t longest_name = 255;  // of channels and attributes, by the format
-
-// OpenEXR compresses on its own pool of threads, which is empty until somebody sizes it.
-void use_all_threads() {
-    static std::once_flag once;
-    std::call_once(once, [] {
-        Imf::setGlobalThreadCount(
-            std::max(Imf::globalThreadCount(), static_cast<int>(std::thread::hardware_concurrency())));
-    });
-}
-
-// OpenEXR completes a file in a destructor, which cannot report that the disk is full; this stream remembers it.
-class CheckedStream final : public Imf::OStream {
-public:
-    explicit CheckedStream(const std::filesystem::path& path)
-        : OStream(path.c_str()), file_(std::fopen(path.c_str(), "wb")) {
-        if (!file_) error_ = errno;
-    }
-    ~CheckedStream() override { close(); }
-    CheckedStream(const CheckedStream&) = delete;
-    CheckedStream& operator=(const CheckedStream&) = delete;
-
-    void write(const char data[], int size) override {
-        if (!error_ && std::fwrite(data, 1, static_cast<std::size_t>(size), file_) != static_cast<std::size_t>(size)) {
-            error_ = errno;
-        }
-    }
-    std::uint64_t tellp() override { return error_ ? 0 : static_cast<std::uint64_t>(std::ftell(file_)); }
-    void seekp(std::uint64_t position) override {
-        if (!error_ && std::fseek(file_, static_cast<long>(position), SEEK_SET) != 0) error_ = errno;
-    }
-
-    // The first error of all, 0 for none.
-    int close() {
-        if (file_ && std::fclose(file_) != 0 && !error_) error_ = errno;
-        file_ = nullptr;
-        return error_;
-    }
-
-private:
-    std::FILE* file_;
-    int error_ = 0;
-};
+constexpr std::string_view fact_prefix = exr_fact_prefix;
+constexpr std::size_t longest_name = longest_exr_name;
 
 [[noreturn]] void cannot_read(const std::filesystem::path& path, std::string_view reason) {
     throw ImageError(fmt::format("cannot read '{}': {}", path.string(), reason));
@@ -81,14 +35,7 @@ private:
 Imf::Header make_header(const std::filesystem::path& path, const Frame& frame) {
     Imf::Header header(frame.width(), frame.height());
     header.compression() = Imf::ZIP_COMPRESSION;
-    for (const auto& [key, value] : frame.facts) {
-        const std::string name = std::string(fact_prefix) + key;
-        if (key.empty() || name.size() > longest_name) {
-            throw ImageError(fmt::format("cannot write '{}': the name of fact '{}' must have 1 to {} characters",
-                                         path.string(), key, longest_name - fact_prefix.size()));
-        }
-        header.insert(name, Imf::StringAttribute(value));
-    }
+    add_facts(path, frame, header);
     return header;
 }
 
@@ -282,32 +229,21 @@ void write_exr(const std::filesystem::path& path, const Frame& frame) {
                         "one pixel and one plane",
                         path.string(), frame.width(), frame.height(), planes.size()));
     }
-    use_all_threads();
+    use_all_exr_threads();
     Imf::Header header = make_header(path, frame);
     Imf::FrameBuffer buffer;
     for (const auto& name : planes) add_plane(path, name, frame.plane(name), header, buffer);
 
-    write_atomically(path, [&](const std::filesystem::path& temporary) {
-        CheckedStream stream(temporary);
-        std::string reason;
-        try {
-            Imf::OutputFile output(stream, header);
-            output.setFrameBuffer(buffer);
-            output.writePixels(frame.height());
-        } catch (const std::exception& error) {
-            reason = error.what();
-        }
-        if (const int error = stream.close()) reason = std::strerror(error);
-        if (!reason.empty()) {
-            throw ImageError(
-                fmt::format("cannot write '{}': {}; check space and permissions of its folder", path.string(), reason));
-        }
+    write_exr_atomically(path, [&](Imf::OStream& stream) {
+        Imf::OutputFile output(stream, header);
+        output.setFrameBuffer(buffer);
+        output.writePixels(frame.height());
     });
 }
 
 Frame read_exr(const std::filesystem::path& path) {
     check_file(path);
-    use_all_threads();
+    use_all_exr_threads();
     try {
         Imf::MultiPartInputFile file(path.c_str());
         return Reader(path, file).read();
