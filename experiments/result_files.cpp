@@ -54,6 +54,7 @@ Json row_json(const ResultRow& row) {
                             {"upper_quartile", row.timing.upper_quartile},
                             {"repetitions", row.timing.repetitions},
                             {"passes", passes_of(row.timing)}};
+    if (row.path_tracer_samples == 0) json["gbuffer_bytes_per_pixel"] = row.gbuffer_bytes_per_pixel;
     return json;
 }
 
@@ -105,14 +106,17 @@ std::string csv_text(const std::string& text) {
 std::string print_csv(const RunResults& results) {
     std::string text = "scene,view,plane,truth,method,path_tracer_samples,measured,reference_samples";
     for (const std::string& name : measure_names()) text.append(",").append(name);
-    text += ",milliseconds,milliseconds_lower_quartile,milliseconds_upper_quartile,repetitions,refusal\n";
+    text +=
+        ",milliseconds,milliseconds_lower_quartile,milliseconds_upper_quartile,repetitions,gbuffer_bytes_per_pixel,"
+        "refusal\n";
     for (const ResultRow& row : results.rows) {
         text += fmt::format("{},{},{},{},{},{},{},{}", csv_text(row.scene), csv_text(row.view), csv_text(row.plane),
                             csv_text(row.truth), csv_text(row.method), row.path_tracer_samples, row.measured ? 1 : 0,
                             row.reference_samples);
         for (const auto& [name, value] : row.measures) text.append(",").append(csv_number(value));
-        text += fmt::format(",{},{},{},{},{}\n", csv_number(row.timing.median), csv_number(row.timing.lower_quartile),
-                            csv_number(row.timing.upper_quartile), row.timing.repetitions, csv_text(row.refusal));
+        text += fmt::format(",{},{},{},{},{},{}\n", csv_number(row.timing.median),
+                            csv_number(row.timing.lower_quartile), csv_number(row.timing.upper_quartile),
+                            row.timing.repetitions, row.gbuffer_bytes_per_pixel, csv_text(row.refusal));
     }
     return text;
 }

@@ -34,6 +34,7 @@ struct ResultRow {
     int reference_samples = 0;                             // per pixel
 
     Timing timing;
+    int gbuffer_bytes_per_pixel = 0;  // as far as this plane needs a G-buffer; the path tracer's rows: 0
 
     double rmse() const;
     double rmse_lower() const;

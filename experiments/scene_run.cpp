@@ -158,7 +158,13 @@ void SceneRun::render_methods(const std::string& plane, RunResults& results) {
         for (std::size_t i = 0; i < working.size(); ++i) {
             try {
                 RasterResult raster = working[i]->render(camera_view, nullptr, &truths->second.full.frame);
-                images.push_back({view, plane, methods[i]->name, std::move(raster.frame.plane(plane)), 0, {}});
+                images.push_back({view,
+                                  plane,
+                                  methods[i]->name,
+                                  std::move(raster.frame.plane(plane)),
+                                  0,
+                                  {},
+                                  static_cast<int>(working[i]->gbuffer_bytes_per_pixel())});
                 rendered.push_back(working[i]);
             } catch (const std::exception& error) {
                 fail(methods[i]->name, error);
@@ -222,6 +228,7 @@ void SceneRun::measure(const PlaneImage& image, RunResults& results) {
                 row.parameters = method_in_scene(*method, entry_, experiment_.file.string());
             }
             row.timing = image.timing;
+            row.gbuffer_bytes_per_pixel = image.gbuffer_bytes_per_pixel;
             row.reference_samples = truth.samples;
 
             Frame test(image.image.width(), image.image.height());

@@ -22,6 +22,7 @@ struct PlaneImage {
     Image image;
     int path_tracer_samples = 0;
     Timing timing;
+    int gbuffer_bytes_per_pixel = 0;
 };
 
 struct SceneRunControl {

@@ -66,7 +66,8 @@ std::string print_results_table(const std::vector<ResultRow>& rows) {
                          {"RMSE [95 %]", Align::right},
                          {"PSNR", Align::right},
                          {"SSIM", Align::right},
-                         {"ms [quartiles]", Align::right}});
+                         {"ms [quartiles]", Align::right},
+                         {"G-buffer B/px", Align::right}});
     const ResultRow* before = nullptr;
     for (const ResultRow& row : rows) {
         const auto subject = [](const ResultRow& r) { return std::tie(r.scene, r.plane, r.truth); };
@@ -82,6 +83,7 @@ std::string print_results_table(const std::vector<ResultRow>& rows) {
         cells.push_back(row.timing.repetitions > 1
                             ? with_interval(row.timing.median, row.timing.lower_quartile, row.timing.upper_quartile)
                             : short_number(row.timing.median));
+        cells.push_back(row.gbuffer_bytes_per_pixel > 0 ? fmt::format("{}", row.gbuffer_bytes_per_pixel) : "-");
         table.add_row(std::move(cells));
     }
     std::string text = table.print();
