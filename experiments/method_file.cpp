@@ -80,6 +80,22 @@ std::string gbuffer_reason(const Method& method, std::string_view name) {
     return "";
 }
 
+// The same of the lights, the environment's cubes and the probe.
+std::string light_reason(const DirectSettings& direct, std::string_view name) {
+    if (name.starts_with("direct.volume_") && direct.local_lights == LocalLights::fullscreen) {
+        return "direct.local_lights = \"fullscreen\"";
+    }
+    if (name == "direct.volume_faces" && direct.local_lights == LocalLights::volume_stencil) {
+        return "direct.local_lights = \"volume_stencil\", which draws both faces";
+    }
+    if (name.starts_with("direct.shadow.emitter_") && !direct.emitters) return "direct.emitters = false";
+    const bool cube = direct.source == SourceOfStage::method && direct.environment == EnvironmentIrradiance::cube;
+    if (name == "environment.size" && !cube) return "no stage reads the environment's cubes (direct.environment would)";
+    if (name == "environment.samples") return "no stage reads glossy levels";
+    if (name.starts_with("probe.")) return "no stage reads the probe";
+    return "";
+}
+
 // Stores `value` in the parameter; returns what is wrong with it, or nothing.
 std::string store(const MethodParameter& parameter, const ConfigValue& value) {
     const auto in_range = [&](double number) { return number >= parameter.least && number <= parameter.most; };
@@ -149,6 +165,11 @@ std::vector<MethodParameter> method_parameters(Method& m) {
          choice(m.gbuffer.normal_format, {"oct32", "oct16", "rgb32f", "rgb16f", "rgb10a2", "r11g11b10f", "xy8"})},
         {"gbuffer.radiance_format", choice(m.gbuffer.radiance_format, {"rgba32f", "rgba16f", "r11g11b10f"})},
         {"direct.source", choice(m.direct.source, sources)},
+        {"direct.emitters", &m.direct.emitters},
+        {"direct.local_lights", choice(m.direct.local_lights, {"fullscreen", "volume", "volume_stencil"})},
+        {"direct.volume_threshold", &m.direct.volume_threshold, 1e-9, 1e6},
+        {"direct.volume_faces", choice(m.direct.volume_faces, {"front", "back"})},
+        {"direct.environment", choice(m.direct.environment, {"harmonics", "cube"})},
         {"direct.shadow.lamps", &m.direct.shadow.lamps},
         {"direct.shadow.point_map", choice(m.direct.shadow.point_map, {"cube", "dual_paraboloid"})},
         {"direct.shadow.cube_generation", choice(m.direct.shadow.cube_generation, {"six_views", "one_pass"})},
@@ -161,6 +182,13 @@ std::vector<MethodParameter> method_parameters(Method& m) {
         {"direct.shadow.emitter_size", &m.direct.shadow.emitter_size, 16, 8192},
         {"direct.shadow.emitter_samples", &m.direct.shadow.emitter_samples, 1, 64},
         {"direct.shadow.bias", &m.direct.shadow.bias, 0, 1e3},
+        {"environment.size", &m.environment.size, 32, 4096},
+        {"environment.samples", &m.environment.samples, 1, 65536},
+        {"probe.x", &m.probe.x, -1e6, 1e6},
+        {"probe.y", &m.probe.y, -1e6, 1e6},
+        {"probe.z", &m.probe.z, -1e6, 1e6},
+        {"probe.size", &m.probe.size, 32, 4096},
+        {"probe.every_frame", &m.probe.every_frame},
         {"ao.enabled", &m.ao.enabled},
         {"ao.estimator", choice(m.ao.estimator, {"mara2016", "g3d_demo", "sao2012", "linear"})},
         {"ao.samples", &m.ao.samples, 1, 1000},
@@ -177,6 +205,7 @@ std::vector<MethodParameter> method_parameters(Method& m) {
                           {"radiosity.enabled", &m.radiosity.enabled},
                           {"radiosity.samples", &m.radiosity.samples, 1, 1000},
                           {"radiosity.layers", &m.radiosity.layers, 1, 2},
+                          {"radiosity.emitters_shine", &m.radiosity.emitters_shine},
                           {"radiosity.radius", &m.radiosity.radius, 1e-6, infinity},
                           {"radiosity.test_tap_normal", &m.radiosity.test_tap_normal},
                           {"radiosity.normalisation", choice(m.radiosity.normalisation, {"hits", "samples"})},
@@ -294,6 +323,7 @@ std::string reason_without_effect(const Method& method, std::string_view name) {
         return "direct.source = \"truth\"";
     }
     if (std::string reason = shadow_reason(method.direct.shadow, name); !reason.empty()) return reason;
+    if (std::string reason = light_reason(method.direct, name); !reason.empty()) return reason;
     const auto blur_reason = [&](std::string_view group, const BilateralBlurSettings& blur) {
         const bool off = name.starts_with(group) && name != fmt::format("{}radius", group) && blur.radius == 0;
         if (off) return fmt::format("{}radius = 0", group);

@@ -1,16 +1,12 @@
 // Light that reaches each pixel of one layer straight from a light, reflected by its Lambertian part.
 //
 // Defines: POINT_LIGHTS, SPOT_LIGHTS, DIRECTIONAL_LIGHTS, EMITTERS (their numbers, where not zero), ENVIRONMENT,
-// AMBIENT_VISIBILITY, and those of shadow_lookup.glsl.
+// ENVIRONMENT_CUBE, AMBIENT_VISIBILITY, LOCAL_IRRADIANCE (a plane holds the light of point and spot lights), and those of shadow_lookup.glsl.
+#include "lit_surface.glsl"
 #include "local_light.glsl"
-#include "normal_encoding.glsl"
 #include "polygon_light.glsl"
-#include "view.glsl"
 
-layout(binding = 0) uniform sampler2DArray depth_plane;
-layout(binding = 1) uniform sampler2DArray normal_plane;
 layout(binding = 2) uniform sampler2DArray albedo_plane;
-uniform int layer;
 
 layout(location = 0) out vec3 direct;
 
@@ -83,11 +79,21 @@ vec3 emitter_irradiance(Emitter emitter, vec3 receiver, vec3 normal) {
 }
 #endif
 
+#ifdef LOCAL_IRRADIANCE
+layout(binding = 8) uniform sampler2DArray local_irradiance;
+#endif
+
 #ifdef ENVIRONMENT
-uniform vec3 environment_irradiance[9];  // irradiance_from() in environment_light.cpp
 #ifdef AMBIENT_VISIBILITY
 layout(binding = 6) uniform sampler2DArray ambient_visibility;
 #endif
+#ifdef ENVIRONMENT_CUBE
+#include "radiance_maps.glsl"
+layout(binding = 9) uniform samplerCube environment_cube;
+
+vec3 irradiance_from_environment(vec3 n) { return diffuse_irradiance(environment_cube, n); }
+#else
+uniform vec3 environment_irradiance[ENVIRONMENT];  // irradiance_from() in environment_light.cpp
 
 vec3 irradiance_from_environment(vec3 n) {
     vec3 sum = environment_irradiance[0] * 0.282095;
@@ -102,15 +108,17 @@ vec3 irradiance_from_environment(vec3 n) {
     return max(sum, vec3(0.0));
 }
 #endif
+#endif
 
 void main() {
-    ivec3 texel = ivec3(gl_FragCoord.xy, layer);
-    float depth = texelFetch(depth_plane, texel, 0).r;
     direct = vec3(0.0);
-    if (is_background(depth)) return;
-    vec3 receiver = world_space_point(gl_FragCoord.xy, depth);
-    vec3 normal = normal_of_texel(texelFetch(normal_plane, texel, 0));
+    vec3 receiver, normal;
+    if (!find_surface(receiver, normal)) return;
+    ivec3 texel = ivec3(gl_FragCoord.xy, layer);
     vec3 irradiance = vec3(0.0);
+#ifdef LOCAL_IRRADIANCE
+    irradiance += texelFetch(local_irradiance, texel, 0).rgb;
+#endif
 #ifdef POINT_LIGHTS
     for (int i = 0; i < POINT_LIGHTS; ++i) irradiance += point_irradiance(point_lights[i], receiver, normal);
 #endif

@@ -1,11 +1,13 @@
 #include "rasterizer/direct_light_pass.h"
 
 #include <array>
+#include <span>
 
 #include <fmt/format.h>
 
 #include "rasterizer/environment_light.h"
 #include "rasterizer/gbuffer_planes.h"
+#include "rasterizer/light_volume_pass.h"
 #include "rasterizer/shadow_pass.h"
 
 namespace plumb {
@@ -20,11 +22,17 @@ enum Unit : GLuint {
     maps_unit,
     emitters_unit,
     ambient_unit,
-    paraboloids_unit
+    paraboloids_unit,
+    local_irradiance_unit,
+    environment_unit
 };
 
 bool uses_ambient_visibility(const Scene& scene, const Method& method) {
     return !scene.environment.is_black() && method.ao.enabled;
+}
+
+bool uses_irradiance_cube(const Scene& scene, const Method& method) {
+    return !scene.environment.is_black() && method.direct.environment == EnvironmentIrradiance::cube;
 }
 
 const GlTexture* find(const PlaneTextures& planes, const std::string& name) {
@@ -36,7 +44,8 @@ const GlTexture* find(const PlaneTextures& planes, const std::string& name) {
 DirectLightPass::DirectLightPass(const PassResources& resources, int layer)
     : context_(resources.context),
       layer_(layer),
-      lights_(resources.scene, resources.method.direct.shadow),
+      lights_(resources.scene, resources.method.direct),
+      dark_(lights_.empty() && resources.scene.environment.is_black()),
       draw_(context_, resources.programs, "direct_light.frag", defines(resources)),
       points_(GlBuffer::from(context_, lights_.points)),
       spots_(GlBuffer::from(context_, lights_.spots)),
@@ -56,8 +65,14 @@ DirectLightPass::DirectLightPass(const PassResources& resources, int layer)
     shadow_maps_ = find(planes, "shadow.maps");
     shadow_emitters_ = find(planes, "shadow.emitters");
     if (uses_ambient_visibility(resources.scene, resources.method)) ambient_visibility_ = &planes.get("ao");
-    if (lights_.any_shadows()) draw_.program().set("bias", resources.method.direct.shadow.bias);
-    set_environment(resources);
+    if (uses_light_volumes(resources.scene, resources.method)) {
+        local_irradiance_ = &planes.get("local_irradiance");
+    }
+    if (uses_irradiance_cube(resources.scene, resources.method)) {
+        environment_irradiance_ = &planes.get("environment.irradiance");
+    } else {
+        set_environment(resources);
+    }
 }
 
 ShaderDefines DirectLightPass::defines(const PassResources& resources) const {
@@ -65,13 +80,18 @@ ShaderDefines DirectLightPass::defines(const PassResources& resources) const {
     const auto add_count = [&](const char* name, std::size_t count) {
         if (count > 0) result.emplace_back(name, fmt::format("{}", count));
     };
-    add_count("POINT_LIGHTS", lights_.points.size());
-    add_count("SPOT_LIGHTS", lights_.spots.size());
+    if (uses_light_volumes(resources.scene, resources.method)) {
+        result.emplace_back("LOCAL_IRRADIANCE", "1");
+    } else {
+        add_count("POINT_LIGHTS", lights_.points.size());
+        add_count("SPOT_LIGHTS", lights_.spots.size());
+    }
     add_count("DIRECTIONAL_LIGHTS", lights_.directionals.size());
     add_count("EMITTERS", lights_.emitters.size());
     for (auto& define : shadow_defines(lights_, resources.method.direct.shadow)) result.push_back(std::move(define));
     const Environment& environment = resources.scene.environment;
     if (!environment.is_black()) result.emplace_back("ENVIRONMENT", environment.texture == no_texture ? "1" : "9");
+    if (uses_irradiance_cube(resources.scene, resources.method)) result.emplace_back("ENVIRONMENT_CUBE", "1");
     if (uses_ambient_visibility(resources.scene, resources.method)) result.emplace_back("AMBIENT_VISIBILITY", "1");
     return result;
 }
@@ -80,9 +100,7 @@ void DirectLightPass::set_environment(const PassResources& resources) const {
     if (resources.scene.environment.is_black()) return;
     const IrradianceCoefficients coefficients = project_irradiance(resources.scene);
     const std::size_t used = resources.scene.environment.texture == no_texture ? 1 : coefficients.size();
-    for (std::size_t k = 0; k < used; ++k) {
-        draw_.program().set(fmt::format("environment_irradiance[{}]", k), coefficients[k]);
-    }
+    draw_.program().set("environment_irradiance", std::span(coefficients).first(used));
 }
 
 void DirectLightPass::execute(const PassFrame&) {
@@ -93,11 +111,13 @@ void DirectLightPass::execute(const PassFrame&) {
     if (shadow_paraboloids_) shadow_paraboloids_->bind(paraboloids_unit);
     if (shadow_maps_) shadow_maps_->bind(maps_unit);
     if (shadow_emitters_) shadow_emitters_->bind(emitters_unit);
+    if (local_irradiance_) local_irradiance_->bind(local_irradiance_unit);
+    if (environment_irradiance_) environment_irradiance_->bind(environment_unit);
     if (ambient_visibility_) ambient_visibility_->bind(ambient_unit);
     const std::array<const GlBuffer*, 6> buffers{&points_,   &spots_,  &directionals_,
                                                  &emitters_, &pieces_, &emitter_cubes_};
     for (std::size_t i = 0; i < buffers.size(); ++i) buffers[i]->bind(GL_SHADER_STORAGE_BUFFER, static_cast<GLuint>(i));
-    draw_.program().set("layer", layer_);
+    if (!dark_) draw_.program().set("layer", layer_);
     draw_.draw(target_);
 }
 
@@ -107,6 +127,8 @@ PassDeclaration declare_direct_light(const Scene& scene, const LightSet& lights,
     pass.name = layer == 0 ? "direct" : "direct.layer2";
     pass.inputs = {prefix + "depth", prefix + "normal", prefix + "albedo"};
     for (std::string& texture : shadow_textures(lights)) pass.inputs.push_back(std::move(texture));
+    if (uses_light_volumes(scene, method)) pass.inputs.push_back(prefix + "local_irradiance");
+    if (uses_irradiance_cube(scene, method)) pass.inputs.emplace_back("environment.irradiance");
     if (uses_ambient_visibility(scene, method)) pass.inputs.emplace_back("ao");
     pass.outputs = {prefix + "direct"};
     pass.create = [layer](const PassResources& resources) {

@@ -73,6 +73,7 @@ std::size_t bytes_per_texel(GLenum format) {
         case GL_R11F_G11F_B10F:
         case GL_DEPTH_COMPONENT32F:
             return 4;
+        case GL_DEPTH32F_STENCIL8:  // padded
         case GL_RG32F:
         case GL_RGBA16:
         case GL_RGBA16F:
@@ -116,7 +117,7 @@ GlTexture::GlTexture(GlContext& context, GLenum target, GLenum format, int width
       layers_(layers),
       levels_(levels) {
     const GladGLContext& gl = context.gl;
-    if (target == GL_TEXTURE_2D) {
+    if (target == GL_TEXTURE_2D || target == GL_TEXTURE_CUBE_MAP) {
         gl.TextureStorage2D(id(), levels, format, width, height);
     } else {
         gl.TextureStorage3D(id(), levels, format, width, height, layers);
@@ -132,6 +133,12 @@ GlTexture GlTexture::flat(GlContext& context, GLenum format, int width, int heig
 
 GlTexture GlTexture::array(GlContext& context, GLenum format, int width, int height, int layers, int levels) {
     return GlTexture(context, GL_TEXTURE_2D_ARRAY, format, width, height, layers, levels);
+}
+
+GlTexture GlTexture::cube(GlContext& context, GLenum format, int size, int levels) {
+    GlTexture texture(context, GL_TEXTURE_CUBE_MAP, format, size, size, 6, levels);
+    texture.set_filter(levels > 1 ? GL_LINEAR_MIPMAP_LINEAR : GL_LINEAR, GL_LINEAR);
+    return texture;
 }
 
 GlTexture GlTexture::cube_array(GlContext& context, GLenum format, int size, int cubes) {
@@ -182,7 +189,10 @@ GlFramebuffer::GlFramebuffer(GlContext& context, std::span<const GlAttachment> c
         attach(gl, id(), point, colour);
         draw_buffers.push_back(point);
     }
-    if (depth.texture != nullptr) attach(gl, id(), GL_DEPTH_ATTACHMENT, depth);
+    if (depth.texture != nullptr) {
+        const bool has_stencil = depth.texture->format() == GL_DEPTH32F_STENCIL8;
+        attach(gl, id(), has_stencil ? GL_DEPTH_STENCIL_ATTACHMENT : GL_DEPTH_ATTACHMENT, depth);
+    }
     if (draw_buffers.empty()) {
         gl.NamedFramebufferDrawBuffer(id(), GL_NONE);
     } else {

@@ -43,19 +43,20 @@ private:
 // Bytes of one texel of a sized internal format. Throws GlError for a format that no pass uses.
 std::size_t bytes_per_texel(GLenum format);
 
-// A texture of any target. Starts with nearest filtering, clamped to its edge; contents are undefined until written.
+// A texture of any target. Starts with nearest filtering (a cube with linear), clamped to its edge; contents are undefined until written.
 class GlTexture : public GlObject {
 public:
     GlTexture() = default;
     static GlTexture flat(GlContext& context, GLenum format, int width, int height, int levels = 1);
     static GlTexture array(GlContext& context, GLenum format, int width, int height, int layers, int levels = 1);
+    static GlTexture cube(GlContext& context, GLenum format, int size, int levels);
     static GlTexture cube_array(GlContext& context, GLenum format, int size, int cubes);
 
     GLenum target() const { return target_; }
     GLenum format() const { return format_; }
     int width() const { return width_; }
     int height() const { return height_; }
-    int layers() const { return layers_; }  // cube arrays: 6 per cube
+    int layers() const { return layers_; }  // cubes: 6 each
     int levels() const { return levels_; }
 
     void set_filter(GLint minify, GLint magnify);

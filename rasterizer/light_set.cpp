@@ -92,7 +92,8 @@ DirectionalRecord make_directional(const DirectionalLight& light, const Bounds& 
 
 }  // namespace
 
-LightSet::LightSet(const Scene& scene, const ShadowSettings& settings) {
+LightSet::LightSet(const Scene& scene, const DirectSettings& direct) {
+    const ShadowSettings& settings = direct.shadow;
     const Bounds bounds = scene.bounds();
     const bool paraboloids = settings.point_map == PointShadowMap::dual_paraboloid;
     const bool linear_cubes = settings.cube_distance == CubeDistance::linear;
@@ -123,6 +124,7 @@ LightSet::LightSet(const Scene& scene, const ShadowSettings& settings) {
         DirectionalRecord& record = directionals.emplace_back(make_directional(light, bounds, settings));
         record.map = add_map(record.clip_from_world);
     }
+    if (!direct.emitters) return;
     for (const EmitterLight& emitter : find_emitters(scene, settings.emitter_samples)) {
         emitters.push_back({static_cast<int>(pieces.size()),
                             static_cast<int>(emitter.pieces.size()),

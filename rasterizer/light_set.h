@@ -70,7 +70,8 @@ struct EmitterCubeRecord {
 };
 
 struct LightSet {
-    LightSet(const Scene& scene, const ShadowSettings& settings);
+    // Emissive surfaces are left out where `direct` does not want them.
+    LightSet(const Scene& scene, const DirectSettings& direct);
 
     std::vector<PointRecord> points;
     std::vector<SpotRecord> spots;

@@ -55,9 +55,33 @@ struct ShadowSettings {
     float bias = 0.005f;      // metres that a receiver is lifted off its surface, besides what the texels call for
 };
 
+// How point and spot lights are shaded (light_volume_pass.h): every light at every pixel, or each within its volume.
+enum class LocalLights { fullscreen, volume, volume_stencil };
+enum class VolumeFaces { front, back };  // which side of a volume is drawn where there is no stencil
+// What gives the irradiance of the environment: spherical harmonics of order 2, or a cube (radiance_maps.h).
+enum class EnvironmentIrradiance { harmonics, cube };
+
 struct DirectSettings {
     SourceOfStage source = SourceOfStage::method;
+    bool emitters = true;  // emissive surfaces light others here; without, only through radiosity.emitters_shine
+    LocalLights local_lights = LocalLights::fullscreen;
+    float volume_threshold = 1.0f / 256.0f;  // W / m^2 below which a light ends
+    VolumeFaces volume_faces = VolumeFaces::back;
+    EnvironmentIrradiance environment = EnvironmentIrradiance::harmonics;
     ShadowSettings shadow;
+};
+
+// The environment as cubes for later passes to read (environment_maps_pass.h).
+struct EnvironmentSettings {
+    int size = 128;     // texels per face and side of the radiance, a power of two from 32
+    int samples = 256;  // directions per texel of the glossy levels, also of the probe's
+};
+
+// A light probe, captured by the rasterizer itself (probe_pass.h).
+struct ProbeSettings {
+    float x = 0.0f, y = 0.0f, z = 0.0f;  // metres, world space
+    int size = 64;                       // texels per face and side, a power of two from 32
+    bool every_frame = false;            // captured anew for each frame, for lights and objects that move
 };
 
 // The separable filter that smooths the noise of few taps along surfaces (bilateral_blur.h has the weights' formulas).
@@ -94,6 +118,7 @@ struct RadiositySettings {
     bool enabled = true;
     int samples = 32;             // taps per pixel, 1..1000
     int layers = 2;               // 1 or 2, at most those of the G-buffer
+    bool emitters_shine = false;  // taps also carry what their surface emits: see radiosity.h
     float radius = 1.0f;          // metres
     bool test_tap_normal = true;  // taps must face the receiver
     RadiosityNormalisation normalisation = RadiosityNormalisation::hits;
@@ -108,6 +133,8 @@ struct Method {
     std::string name = "default";
     GBufferSettings gbuffer;
     DirectSettings direct;
+    EnvironmentSettings environment;
+    ProbeSettings probe;
     AmbientObscuranceSettings ao;
     RadiositySettings radiosity;
 };

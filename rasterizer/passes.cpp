@@ -8,10 +8,13 @@
 #include "rasterizer/composite_pass.h"
 #include "rasterizer/depth_mip_chain.h"
 #include "rasterizer/direct_light_pass.h"
+#include "rasterizer/environment_maps_pass.h"
 #include "rasterizer/gbuffer_pass.h"
 #include "rasterizer/gl_error.h"
+#include "rasterizer/light_volume_pass.h"
 #include "rasterizer/motion_pass.h"
 #include "rasterizer/one_pass_gbuffer.h"
+#include "rasterizer/probe_pass.h"
 #include "rasterizer/radiosity.h"
 #include "rasterizer/shadow_pass.h"
 #include "rasterizer/truth_pass.h"
@@ -58,6 +61,16 @@ void validate(const Method& method) {
                         shadow.paraboloid_tessellation));
     require(shadow.pcf_radius >= 0 && shadow.pcf_radius <= 16, method,
             fmt::format("direct.shadow.pcf_radius is {}; it must lie between 0 and 16 texels", shadow.pcf_radius));
+    require(method.direct.volume_threshold > 0.0f && std::isfinite(method.direct.volume_threshold), method,
+            fmt::format("direct.volume_threshold is {}; it must be more than zero W/m^2, as light never falls to nothing",
+                        method.direct.volume_threshold));
+    require(!(method.radiosity.enabled && method.radiosity.emitters_shine &&
+              (method.direct.emitters || method.direct.source == SourceOfStage::truth)),
+            method,
+            "radiosity.emitters_shine would count the light of emissive surfaces a second time beside `direct`; set "
+            "direct.emitters to false (and direct.source to \"method\"), or leave emitters_shine off");
+    require(method.environment.samples >= 1 && method.environment.samples <= 65536, method,
+            fmt::format("environment.samples is {}; it must lie between 1 and 65536", method.environment.samples));
     require(shadow.bias >= 0.0f && std::isfinite(shadow.bias), method,
             fmt::format("direct.shadow.bias is {}; it must be zero or more metres", shadow.bias));
     require(!(any_truth && gbuffer.guard_band > 0), method,
@@ -66,7 +79,7 @@ void validate(const Method& method) {
 
 std::vector<PassDeclaration> declare_passes(const Scene& scene, const Method& method, const Quantities& quantities) {
     validate(method);
-    const LightSet lights(scene, method.direct.shadow);
+    const LightSet lights(scene, method.direct);
     std::vector<PassDeclaration> passes;
     const auto add_all = [&](std::vector<PassDeclaration> more) {
         for (PassDeclaration& pass : more) passes.push_back(std::move(pass));
@@ -78,6 +91,10 @@ std::vector<PassDeclaration> declare_passes(const Scene& scene, const Method& me
     add_all(declare_depth_mip_chain());
     add_all(declare_ambient_obscurance(method, quantities));
     passes.push_back(declare_shadows(lights, method));
+    passes.push_back(declare_light_volumes(scene, lights, method, 0));
+    passes.push_back(declare_light_volumes(scene, lights, method, 1));
+    passes.push_back(declare_environment_maps(scene, method));
+    passes.push_back(declare_probe(method));
     passes.push_back(declare_true_direct(method));
     passes.push_back(declare_direct_light(scene, lights, method, 0));
     passes.push_back(declare_direct_light(scene, lights, method, 1));

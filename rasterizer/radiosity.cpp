@@ -59,6 +59,7 @@ ShaderDefines shader_defines(const PassResources& resources) {
         {"SAMPLES", "1"},
         {"NORMALISATION", settings.normalisation == RadiosityNormalisation::hits ? "HITS" : "SAMPLES"},
         {"LAYERS", std::to_string(settings.layers)},
+        {"EMITTERS_SHINE", settings.emitters_shine ? "1" : "0"},
         {"TEST_TAP_NORMAL", settings.test_tap_normal ? "1" : "0"},
         {"RADIUS", shader_literal(settings.radius)},
         {"MIP_OFFSET", std::to_string(settings.mip_offset)},
@@ -111,13 +112,16 @@ RadiosityPass::RadiosityPass(const PassResources& resources)
       spiral_(resources.context, resources.method.radiosity.samples),
       draw_(resources.context, resources.programs, "radiosity.frag", shader_defines(resources)),
       target_(gathering_target(resources)),
-      area_(resources, glm::ivec2(blur_reach(resources.method.radiosity.blur))) {}
+      area_(resources, glm::ivec2(blur_reach(resources.method.radiosity.blur))) {
+    if (resources.method.radiosity.emitters_shine) emission_ = &resources.planes.get("emission");
+}
 
 void RadiosityPass::execute(const PassFrame&) {
     depth_.bind(0);
     normal_.bind(1);
     if (position_) position_->bind(stored_position_unit);
     direct_.bind(2);
+    if (emission_) emission_->bind(4);
     spiral_.bind();
     const InnerArea::Restriction restriction(area_);
     draw_.draw(target_);
@@ -149,8 +153,14 @@ std::vector<PassDeclaration> declare_radiosity(const Method& method) {
         .disabled = disabled,
         .remark = fmt::format("{} taps, {} layer{}, divided by the {}", settings.samples, settings.layers,
                               settings.layers == 1 ? "" : "s", to_string(settings.normalisation))};
+    std::vector<std::string> of_each_layer = {depth, "normal", "direct"};
+    if (settings.emitters_shine) {
+        gathering.inputs.emplace_back("emission");
+        gathering.remark += ", emitters shine";
+        of_each_layer.emplace_back("emission");
+    }
     if (settings.layers > 1) {
-        for (const std::string& plane : {depth, std::string("normal"), std::string("direct")}) {
+        for (const std::string& plane : of_each_layer) {
             gathering.inputs.push_back(std::string(second_layer_prefix) + plane);
         }
     }

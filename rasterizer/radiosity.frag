@@ -1,6 +1,6 @@
 // One bounce of diffuse light from the visible layers; radiosity.h has the formulas.
 //
-// Defines: LAYERS, TEST_TAP_NORMAL (0, 1), NORMALISATION with the names of its values, RADIUS (metres), MIP_OFFSET,
+// Defines: LAYERS, TEST_TAP_NORMAL and EMITTERS_SHINE (0, 1), NORMALISATION with the names of its values, RADIUS (metres), MIP_OFFSET,
 // FINEST_LEVEL, COARSEST_LEVEL, and those of falloff.glsl and sample_spiral.glsl.
 
 #include "depth_mip_chain.glsl"
@@ -11,6 +11,9 @@
 layout(binding = 0) uniform sampler2DArray depth;  // with its MIP chain where COARSEST_LEVEL > 0
 layout(binding = 1) uniform sampler2DArray normal;
 layout(binding = 2) uniform sampler2DArray radiance;  // reflected and diffuse, of each layer
+#if EMITTERS_SHINE
+layout(binding = 4) uniform sampler2DArray emission;
+#endif
 
 layout(location = 0) out vec4 irradiance;  // rgb: E; a: confidence
 
@@ -37,6 +40,9 @@ vec4 received(Tap tap, int layer, vec3 centre, vec3 camera_normal) {
     hit = hit && near;
 #endif
     vec3 light = texelFetch(radiance, ivec3(tap.source, layer), 0).rgb;
+#if EMITTERS_SHINE
+    light += texelFetch(emission, ivec3(tap.source, layer), 0).rgb;
+#endif
     return hit ? vec4(near ? cosine * falloff(square * (1.0 / (RADIUS * RADIUS))) * light : vec3(0.0), 1.0) : vec4(0.0);
 }
 

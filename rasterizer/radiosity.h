@@ -18,7 +18,13 @@
 //   them as if they were even in solid angle, so that more taps do not converge to the integral; M averages over the
 //   hits only, as if the rest of the hemisphere looked like them.
 //
-// Emissive surfaces do not shine through taps: light that reaches X from them in one segment is `direct`.
+// Light that reaches X from emissive surfaces in one segment is `direct`, so they do not shine through taps. With
+// `emitters_shine` they do, as in the sources: B is then direct + emission at Y. The emitters' light must be left out of
+// `direct` (direct.emitters = false), or it would be counted twice, and takes the place of one bounce: `irradiance`,
+// `indirect.1` and `indirect` hold light of emitters after no bounce besides light of lamps, suns and the environment
+// after one. No plane then means what the truth's plane of its name means; what is to be compared is the sum direct +
+// indirect, with the truth's direct + (of lamps, suns and environment only) indirect.1, which is the truth's `direct`
+// where emissive surfaces are the only lights.
 // Choices where the sources are silent: a tap outside the image (guard band included) or without a surface is no hit. A
 // far tap reads the MIP chain of the depth only; normal and radiance are those of the very pixel that the chain's texel
 // holds, at level 0: exact, at the price of scattered reads.
@@ -43,6 +49,7 @@ private:
     const GlTexture& normal_;
     const GlTexture* position_;  // where positions are stored
     const GlTexture& direct_;
+    const GlTexture* emission_ = nullptr;
     SampleSpiral spiral_;
     FullscreenDraw draw_;
     GlFramebuffer target_;

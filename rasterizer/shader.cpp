@@ -179,6 +179,11 @@ void Program::set(std::string_view uniform, const glm::mat4& value) const {
     context().gl.ProgramUniformMatrix4fv(id(), location(uniform), 1, GL_FALSE, &value[0][0]);
 }
 
+void Program::set(std::string_view uniform, std::span<const glm::vec3> values) const {
+    context().gl.ProgramUniform3fv(id(), location(fmt::format("{}[0]", uniform)), static_cast<GLsizei>(values.size()),
+                                   &values.front().x);
+}
+
 const Program& ProgramCache::get(const std::vector<std::string>& files, const ShaderDefines& defines) {
     std::string key = fmt::format("{}", fmt::join(files, "+"));
     for (const auto& [name, value] : defines) key += fmt::format("|{}={}", name, value);

@@ -8,6 +8,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -54,6 +55,8 @@ public:
     void set(std::string_view uniform, const glm::vec4& value) const;
     void set(std::string_view uniform, const glm::ivec2& value) const;
     void set(std::string_view uniform, const glm::mat4& value) const;
+    // The first elements of an array.
+    void set(std::string_view uniform, std::span<const glm::vec3> values) const;
 
 private:
     GLint location(std::string_view uniform) const;

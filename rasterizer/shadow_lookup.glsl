@@ -1,15 +1,13 @@
 // How much of a light reaches a receiver, from the shadow maps of shadow_pass.h.
 //
-// Defines: POINT_CUBES, POINT_PARABOLOIDS, SHADOW_MAPS, EMITTER_CUBES: texels per side of those that there are;
+// Defines: SHADOW_BIAS (metres); POINT_CUBES, POINT_PARABOLOIDS, SHADOW_MAPS, EMITTER_CUBES: texels per side of those that there are;
 // LINEAR_CUBES where cubes keep distances; PCF_RADIUS (texels).
-
-uniform float bias;  // metres
 
 // Texels of a shadow map are flat steps across the receiver, and a filtered lookup reaches up to one texel away along each
 // axis of the map. Lifting the receiver along its normal by (texel size) * (|n_x| + |n_y|), n_x and n_y the normal in the
 // map's plane, makes it clear the steps of its own surface to first order, and no more than that.
 vec3 lifted(vec3 receiver, vec3 normal, float texel_size, float slope) {
-    return receiver + normal * (bias + texel_size * slope);
+    return receiver + normal * (SHADOW_BIAS + texel_size * slope);
 }
 
 // |n_x| + |n_y| at most: sqrt(2) times the part of the normal across the axis.

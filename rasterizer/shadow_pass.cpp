@@ -57,7 +57,7 @@ ShadowPass::ShadowPass(const PassResources& resources)
       scene_(resources.scene),
       settings_(resources.method.direct.shadow),
       geometry_(resources.geometry()) {
-    const LightSet lights(scene_, settings_);
+    const LightSet lights(scene_, resources.method.direct);
     add_cubes(resources.planes, point_texture, lights.point_cubes, settings_.cube_size);
     add_cubes(resources.planes, emitter_texture, lights.emitter_cubes, settings_.emitter_size);
     add_paraboloids(resources.planes, lights.point_paraboloids, settings_.paraboloid_size);
@@ -243,7 +243,7 @@ std::vector<std::string> shadow_textures(const LightSet& lights) {
 }
 
 ShaderDefines shadow_defines(const LightSet& lights, const ShadowSettings& settings) {
-    ShaderDefines defines;
+    ShaderDefines defines{{"SHADOW_BIAS", shader_literal(settings.bias)}};
     const auto add_size = [&](const char* name, bool there, int size) {
         if (there) defines.emplace_back(name, fmt::format("{}.0", size));
     };

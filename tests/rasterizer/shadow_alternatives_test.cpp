@@ -93,7 +93,7 @@ TEST_P(ShadowAlternativesTest, LampsWithoutShadowsShineThroughEverything) {
     Method method = plain_method();
     method.direct.shadow.lamps = false;
     EXPECT_GT(count_lamp_shadows(context(), scene, method).wrong, 100);
-    EXPECT_TRUE(LightSet(scene, method.direct.shadow).any_shadows() == false);
+    EXPECT_TRUE(LightSet(scene, method.direct).any_shadows() == false);
 }
 
 // The orthographic map as rays see it: depth 1 at its near plane, 0 at its far plane, row 0 at the bottom.
@@ -138,7 +138,7 @@ TEST_P(ShadowAlternativesTest, PercentageCloserFilteringAveragesComparisons) {
         Method method = plain_method();
         method.direct.shadow.map_size = 128;
         method.direct.shadow.pcf_radius = radius;
-        const DirectionalRecord sun = LightSet(scene, method.direct.shadow).directionals[0];
+        const DirectionalRecord sun = LightSet(scene, method.direct).directionals[0];
         const TracedMap map(scene, glm::dmat4(sun.clip_from_world), 128);
         const Frame frame = render(context(), scene, view, {"position", "normal", "albedo", "direct", "depth"}, method);
         int compared = 0, different = 0, partly = 0;

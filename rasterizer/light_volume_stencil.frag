@@ -1,0 +1,4 @@
+// Writes nothing but the stencil.
+flat in int light;
+
+void main() {}

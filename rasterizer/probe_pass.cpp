@@ -1,0 +1,121 @@
+#include "rasterizer/probe_pass.h"
+
+#include <fmt/format.h>
+#include <glm/gtc/constants.hpp>
+
+#include "rasterizer/cube_faces.h"
+#include "rasterizer/pass_plan.h"
+#include "rasterizer/passes.h"
+#include "rasterizer/view_uniforms.h"
+
+namespace plumb {
+namespace {
+
+// What closer things than this would show is cut away: the probe is meant to stand in free space.
+constexpr float near_plane = 0.01f;
+
+Method method_of_faces(const Method& method) {
+    Method faces = method;
+    // Encodings stay: the programs that the passes share are made for them.
+    faces.gbuffer.source = SourceOfStage::method;
+    faces.gbuffer.generation = LayerGeneration::peel;
+    faces.gbuffer.layer_selection = LayerSelection::geometry_shader;
+    faces.gbuffer.guard_band = 0;
+    faces.gbuffer.layers = faces.ao.layers = 1;
+    faces.direct.source = SourceOfStage::method;
+    faces.radiosity.enabled = false;
+    return faces;
+}
+
+float far_plane(const Scene& scene, const glm::vec3& position) {
+    const Bounds bounds = scene.bounds();
+    if (bounds.empty()) return 1.0f;
+    return 1.01f * glm::length(glm::max(glm::abs(bounds.lower - position), glm::abs(bounds.upper - position))) +
+           2.0f * near_plane;
+}
+
+Camera camera_of(const CubeFace& face, const glm::vec3& position, float farthest) {
+    Camera camera;
+    camera.name = "probe";
+    camera.world_from_camera = glm::mat4(face.axes());
+    camera.world_from_camera[3] = glm::vec4(position, 1.0f);
+    camera.vertical_fov = glm::half_pi<float>();
+    camera.near_plane = near_plane;
+    camera.far_plane = farthest;
+    return camera;
+}
+
+}  // namespace
+
+// A small pipeline of its own for square views; the geometry is shared.
+class ProbePass::Capture {
+public:
+    explicit Capture(const PassResources& outer)
+        : context_(outer.context),
+          method_(method_of_faces(outer.method)),
+          planes_(context_, outer.method.probe.size, outer.method.probe.size),
+          view_uniforms_(context_) {
+        const std::vector<PassDeclaration> declarations = declare_passes(outer.scene, method_, outer.quantities);
+        plan_ = plan_passes(declarations, {"total"});
+        const PassResources resources{context_, outer.scene,    method_,    outer.quantities,
+                                      planes_,  outer.programs, plan_.read, outer.geometry};
+        for (const std::size_t index : plan_.order) passes_.push_back(declarations[index].create(resources));
+        const ProbeSettings& probe = outer.method.probe;
+        const glm::vec3 position(probe.x, probe.y, probe.z);
+        const float farthest = far_plane(outer.scene, position);
+        for (const CubeFace& face : cube_faces) {
+            views_.emplace_back(camera_of(face, position, farthest), probe.size, probe.size);
+        }
+        source_ = GlFramebuffer(context_, std::array{GlAttachment{&planes_.get("total")}}, {}, "probe");
+    }
+
+    void draw_face(int face, const GlFramebuffer& target) const {
+        const View& view = views_[static_cast<std::size_t>(face)];
+        view_uniforms_.update(view, view, 0);
+        for (const std::unique_ptr<Pass>& pass : passes_) {
+            view_uniforms_.bind();
+            pass->execute({view, view});
+        }
+        // Both have their lower row first.
+        const int size = planes_.width();
+        context_.gl.BlitNamedFramebuffer(source_.id(), target.id(), 0, 0, size, size, 0, 0, size, size,
+                                         GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    }
+
+private:
+    GlContext& context_;
+    const Method method_;
+    PlaneTextures planes_;
+    ViewUniforms view_uniforms_;
+    PassPlan plan_;
+    std::vector<std::unique_ptr<Pass>> passes_;
+    std::vector<View> views_;
+    GlFramebuffer source_;
+};
+
+ProbePass::ProbePass(const PassResources& resources)
+    : maps_(resources, "probe", resources.method.probe.size, resources.method.environment.samples),
+      every_frame_(resources.method.probe.every_frame),
+      capture_(std::make_unique<Capture>(resources)) {}
+
+ProbePass::~ProbePass() = default;
+
+void ProbePass::execute(const PassFrame&) {
+    if (!capture_) return;
+    for (int face = 0; face < 6; ++face) capture_->draw_face(face, maps_.face(face));
+    maps_.filter();
+    if (!every_frame_) capture_.reset();
+}
+
+PassDeclaration declare_probe(const Method& method) {
+    const ProbeSettings& probe = method.probe;
+    PassDeclaration pass;
+    pass.name = "probe";
+    pass.outputs = RadianceMaps::outputs("probe");
+    pass.create = [](const PassResources& resources) { return std::make_unique<ProbePass>(resources); };
+    pass.remark = fmt::format("from ({}, {}, {}), faces of {}^2, {}", probe.x, probe.y, probe.z, probe.size,
+                              probe.every_frame ? "every frame" : "once");
+    return pass;
+}
+
+}  // namespace plumb

@@ -1,0 +1,338 @@
+// Radiance maps of the environment and of probes against integrals over directions, and how shaders read them.
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include <fmt/format.h>
+
+#include "gl_test.h"
+#include "light_run.h"
+#include "light_scenes.h"
+#include "rasterizer/cube_faces.h"
+#include "rasterizer/gl_error.h"
+#include "rasterizer/specular_albedo_texture.h"
+#include "ray_caster.h"
+#include "scenes/ggx.h"
+#include "scenes/specular_albedo.h"
+
+namespace plumb {
+namespace {
+
+using RadianceMapsTest = GlTest;
+PLUMBLINE_BOTH_BACKENDS(RadianceMapsTest);
+
+constexpr double pi = glm::pi<double>();
+using Radiance = std::function<glm::dvec3(const glm::dvec3& direction)>;
+
+// The direction of a texel of a face as read back: its top row first.
+glm::dvec3 direction_of(int face, int x, int y, int size) {
+    const CubeFace& cube_face = cube_faces[static_cast<std::size_t>(face)];
+    const glm::dvec3 forward(cube_face.forward), up(cube_face.up);
+    const double s = 2.0 * (x + 0.5) / size - 1.0, t = 1.0 - 2.0 * (y + 0.5) / size;
+    return glm::normalize(forward + s * glm::cross(forward, up) + t * up);
+}
+
+// Sums weight(d) L(d) over the sphere, by equal steps of the cosine of the polar angle about `axis` and of the azimuth.
+glm::dvec3 integrate(const Radiance& radiance, const glm::dvec3& axis, const std::function<double(double)>& weight,
+                     bool normalised, int rows, int columns) {
+    const glm::dvec3 helper = std::abs(axis.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0);
+    const glm::dvec3 u = glm::normalize(glm::cross(helper, axis)), v = glm::cross(axis, u);
+    glm::dvec3 sum(0.0);
+    double total = 0.0;
+    for (int i = 0; i < rows; ++i) {
+        // Finer towards the axis, where lobes are: the cosine is 1 - 2 q^2, which q's steps cover with weight 4 q.
+        const double q = (i + 0.5) / rows, cosine = 1.0 - 2.0 * q * q;
+        const double share = weight(cosine) * 4.0 * q / rows * 2.0 * pi / columns;
+        if (share == 0.0) continue;
+        const double sine = std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
+        for (int j = 0; j < columns; ++j) {
+            const double azimuth = 2.0 * pi * (j + 0.5) / columns;
+            sum += share * radiance(sine * std::cos(azimuth) * u + sine * std::sin(azimuth) * v + cosine * axis);
+            total += share;
+        }
+    }
+    return normalised ? sum / total : sum;
+}
+
+glm::dvec3 irradiance(const Radiance& radiance, const glm::dvec3& normal, int rows = 200, int columns = 200) {
+    return integrate(
+        radiance, normal, [](double cosine) { return std::max(0.0, cosine); }, false, rows, columns);
+}
+
+// The lobe of the split sum: D(h) (r.d) with h half way between r and d.
+glm::dvec3 prefiltered(const Radiance& radiance, const glm::dvec3& r, double alpha) {
+    const auto lobe = [alpha](double cosine) {
+        if (cosine <= 0.0) return 0.0;
+        const double square = 0.5 * (1.0 + cosine);  // of the cosine of half the angle
+        return ggx_distribution(std::sqrt(square), 1.0 - square, alpha) * cosine;
+    };
+    return integrate(radiance, r, lobe, true, 600, 100);
+}
+
+// Bright upwards and to one side, with some structure a few tens of degrees wide.
+Scene make_sky_scene() {
+    Scene scene = make_corner();
+    Texture sky;
+    sky.width = 256, sky.height = 128, sky.wrap_v = TextureWrap::clamp;
+    for (int y = 0; y < sky.height; ++y) {
+        for (int x = 0; x < sky.width; ++x) {
+            const double polar = pi * (y + 0.5) / sky.height, azimuth = 2.0 * pi * (x + 0.5) / sky.width;
+            const double value = 1.0 + 0.8 * std::cos(polar) + 0.5 * std::sin(polar) * std::sin(3.0 * azimuth);
+            const double glow = 3.0 * std::exp(-20.0 * (1.0 - std::sin(polar) * std::cos(azimuth - 1.0)));
+            for (const double channel : {value + glow, 0.5 * value, 0.3 + glow, 1.0})
+                sky.texels.push_back(half(static_cast<float>(channel)));
+        }
+    }
+    scene.textures.push_back(sky);
+    scene.environment = {{1.0f, 2.0f, 0.5f}, 0, 0.4f};
+    return scene;
+}
+
+View small_view() { return View(corner_view().camera(), 32, 24); }
+
+LightRun run_of(GlContext& context, const Scene& scene, const Method& method, const std::string& name) {
+    return {context, scene, method, RadianceMaps::outputs(name), small_view()};
+}
+
+// Compares some texels of each face and level with the integrals.
+void expect_maps(const LightRun& run, const std::string& name, const Radiance& radiance, double irradiance_tolerance,
+                 double lobe_tolerance) {
+    for (int face = 0; face < 6; ++face) {
+        const Image irradiances = run.image(name + ".irradiance", 3, face);
+        for (const auto& [x, y] : {std::pair{0, 0}, std::pair{15, 3}, std::pair{7, 8}, std::pair{4, 14}}) {
+            const glm::dvec3 expected = irradiance(radiance, direction_of(face, x, y, 16), 120, 120);
+            EXPECT_LT(glm::length(vector_at(irradiances, x, y) - expected),
+                      irradiance_tolerance * glm::length(expected))
+                << "face " << face << " at " << x << ", " << y << ": " << irradiances.at(x, y) << " for " << expected.x;
+        }
+        for (int level = 1; level < prefiltered_levels; ++level) {
+            const Image lobes = run.image(name + ".prefiltered", 3, face, level);
+            const double roughness = static_cast<double>(level) / (prefiltered_levels - 1);
+            const int size = lobes.width();
+            for (const auto& [x, y] : {std::pair{0, size / 2}, std::pair{size / 2, size / 3}}) {
+                const glm::dvec3 expected =
+                    prefiltered(radiance, direction_of(face, x, y, size), roughness * roughness);
+                EXPECT_LT(glm::length(vector_at(lobes, x, y) - expected), lobe_tolerance * glm::length(expected))
+                    << "face " << face << " level " << level << ": " << lobes.at(x, y) << " for " << expected.x;
+            }
+        }
+    }
+}
+
+TEST_P(RadianceMapsTest, TheEnvironmentIsIntegratedForDiffuseAndGlossySurfaces) {
+    const Scene scene = make_sky_scene();
+    Method method = plain_method();
+    method.environment.size = 64;
+    LightRun run = run_of(context(), scene, method, "environment");
+    run.run();
+    // Texels of 1.4 degrees and, for irradiance, 2.8: a part in a hundred of a glow 13 degrees wide. Lobes besides have
+    // the 256 samples' error and the MIP levels' box filter.
+    expect_maps(
+        run, "environment", [&](const glm::dvec3& d) { return glm::dvec3(scene.environment_radiance(d)); }, 0.01, 0.04);
+    const Image face = run.image("environment.radiance", 3, 4), copy = run.image("environment.prefiltered", 3, 4);
+    EXPECT_TRUE(std::ranges::equal(face.values(), copy.values())) << "roughness 0 is a mirror";
+    for (const auto& [x, y] : {std::pair{3, 60}, std::pair{40, 11}}) {
+        const glm::dvec3 expected(scene.environment_radiance(direction_of(4, x, y, 64)));
+        EXPECT_LT(glm::length(vector_at(face, x, y) - expected), 0.01 * glm::length(expected));
+    }
+}
+
+TEST_P(RadianceMapsTest, AConstantEnvironmentStaysExactlyWhatItIs) {
+    Scene scene = make_corner();
+    scene.environment.radiance = {0.5f, 0.75f, 1.25f};
+    LightRun run = run_of(context(), scene, plain_method(), "environment");
+    run.run();
+    for (int face = 0; face < 6; ++face) {
+        const Image irradiances = run.image("environment.irradiance", 3, face);
+        EXPECT_NEAR(irradiances.at(5, 9, 1), 0.75 * pi, 1e-5);  // sums of floats
+        for (int level = 0; level < prefiltered_levels; ++level) {
+            EXPECT_NEAR(run.image("environment.prefiltered", 3, face, level).at(1, 2, 2), 1.25f, 1e-5f);
+        }
+    }
+}
+
+TEST_P(RadianceMapsTest, DirectLightMayReadTheIrradianceCubeInsteadOfHarmonics) {
+    const Scene scene = make_sky_scene();
+    const View view = corner_view();
+    Method method = plain_method();
+    const Frame harmonics = render(context(), scene, view, {"direct", "albedo", "normal", "depth"}, method);
+    method.direct.environment = EnvironmentIrradiance::cube;
+    const Image cube = render(context(), scene, view, {"direct"}, method).plane("direct");
+    const auto sky = [&](const glm::dvec3& d) { return glm::dvec3(scene.environment_radiance(d)); };
+    double worst_cube = 0.0, worst_harmonics = 0.0;
+    for (const auto& [x, y] : {std::pair{10, 60}, std::pair{50, 10}, std::pair{90, 60}, std::pair{48, 60}}) {
+        if (std::isinf(harmonics.plane("depth").at(x, y))) continue;
+        const glm::dvec3 expected = vector_at(harmonics.plane("albedo"), x, y) / pi *
+                                    irradiance(sky, vector_at(harmonics.plane("normal"), x, y));
+        const auto error = [&](const Image& image) {
+            return glm::length(vector_at(image, x, y) - expected) / glm::length(expected);
+        };
+        worst_cube = std::max(worst_cube, error(cube));
+        worst_harmonics = std::max(worst_harmonics, error(harmonics.plane("direct")));
+    }
+    // The cube's texels are 5.6 degrees wide; order 2 misses what a small bright glow sends.
+    EXPECT_LT(worst_cube, 0.015);
+    EXPECT_LT(worst_harmonics, 0.1);
+}
+
+TEST_P(RadianceMapsTest, SizesThatCannotBeHalvedAreErrors) {
+    Method method = plain_method();
+    method.environment.size = 96;
+    EXPECT_THROW(run_of(context(), make_sky_scene(), method, "environment"), MethodError);
+}
+
+Method probe_method(const glm::vec3& position, int size) {
+    Method method = plain_method();
+    method.probe.x = position.x, method.probe.y = position.y, method.probe.z = position.z;
+    method.probe.size = size;
+    return method;
+}
+
+TEST_P(RadianceMapsTest, AProbeInsideAnEmitterSeesItsRadianceEverywhere) {
+    Scene scene;
+    scene.materials.resize(1);
+    scene.materials[0].base_colour = {0.0f, 0.0f, 0.0f};
+    scene.materials[0].emission = {2.0f, 0.5f, 0.25f};
+    scene.meshes.push_back(make_ball(12, 1.5f, {1.0f, 2.0f, 3.0f}));
+    scene.instances.push_back({"shell", 0, glm::mat4(1.0f)});
+    LightRun run = run_of(context(), scene, probe_method({1.2f, 1.9f, 3.1f}, 32), "probe");
+    run.run();
+    for (int face = 0; face < 6; ++face) {
+        const Image seen = run.image("probe.radiance", 3, face);
+        for (int y = 0; y < 32; ++y) {
+            for (int x = 0; x < 32; ++x) ASSERT_EQ(vector_at(seen, x, y), glm::dvec3(2.0, 0.5, 0.25)) << face;
+        }
+        EXPECT_NEAR(run.image("probe.irradiance", 3, face).at(3, 8), 2.0 * pi, 1e-4);  // sums of floats
+        for (int level = 0; level < prefiltered_levels; ++level) {
+            EXPECT_NEAR(run.image("probe.prefiltered", 3, face, level).at(0, 0, 1), 0.5f, 1e-5f) << level;
+        }
+    }
+}
+
+// Every texel of a probe among balls and walls against a ray with the lamp's light worked out by hand, and the maps
+// against integrals over such rays.
+TEST_P(RadianceMapsTest, AProbeSeesTheLitScene) {
+    Scene scene = make_corner();
+    Mesh ball = make_ball(6, 0.3f, {-0.5f, 0.5f, 0.0f});
+    scene.instances.push_back({"ball", static_cast<int>(scene.meshes.size()), glm::mat4(1.0f)});
+    scene.meshes.push_back(ball);
+    scene.environment.radiance = {0.2f, 0.3f, 0.4f};
+    scene.point_lights.push_back({"lamp", {0.4f, 1.9f, 0.9f}, {9.0f, 7.0f, 5.0f}});
+    const glm::vec3 position(0.5f, 0.8f, 0.6f);
+    constexpr int size = 32;
+    Method method = probe_method(position, size);
+    method.direct.shadow.lamps = false;
+    LightRun run = run_of(context(), scene, method, "probe");
+    run.run();
+    const RayCaster caster(scene);
+    const Radiance radiance = [&](const glm::dvec3& d) {
+        const CastHit hit = caster.cast(glm::dvec3(position), d, 1e-3, 1e3);
+        if (!hit.hit) return glm::dvec3(scene.environment.radiance);
+        const PointLight& lamp = scene.point_lights[0];
+        const glm::dvec3 to_light = glm::dvec3(lamp.position) - hit.point;
+        const double distance = glm::length(to_light);
+        const glm::dvec3 arriving =
+            glm::dvec3(lamp.intensity) * std::max(0.0, glm::dot(hit.normal, to_light)) / std::pow(distance, 3.0) +
+            pi * glm::dvec3(scene.environment.radiance);
+        return hit.emission + hit.albedo / pi * arriving;
+    };
+    int wrong = 0;
+    for (int face = 0; face < 6; ++face) {
+        const Image seen = run.image("probe.radiance", 3, face);
+        for (int y = 0; y < size; ++y) {
+            for (int x = 0; x < size; ++x) {
+                const glm::dvec3 expected = radiance(direction_of(face, x, y, size));
+                // Half floats of direct light and albedo.
+                wrong += glm::length(vector_at(seen, x, y) - expected) > 3e-3 * glm::length(expected);
+            }
+        }
+    }
+    // Silhouettes, where the rasterizer's grid of 1/256 pixel may show the other side.
+    EXPECT_LE(wrong, 6 * size * size / 200);
+    // Texels of 2.8 degrees across bright edges.
+    expect_maps(run, "probe", radiance, 0.02, 0.12);
+}
+
+TEST_P(RadianceMapsTest, AProbeOfEveryFrameIsTheSameAgainAndOneOfTheFirstLetsItsMemoryGo) {
+    Scene scene = make_corner();
+    scene.point_lights.push_back({"lamp", {0.4f, 1.9f, 0.9f}, {9.0f, 7.0f, 5.0f}});
+    Method method = probe_method({0.5f, 0.8f, 0.6f}, 32);
+    method.direct.shadow.cube_size = 64;
+    LightRun once = run_of(context(), scene, method, "probe");
+    const std::size_t before = once.allocated_bytes();
+    once.run();
+    EXPECT_LT(once.allocated_bytes(), before);
+    method.probe.every_frame = true;
+    LightRun always = run_of(context(), scene, method, "probe");
+    always.run();
+    const Image first = always.image("probe.irradiance", 3, 2);
+    const std::size_t after_first = always.allocated_bytes();
+    always.run();
+    EXPECT_EQ(always.allocated_bytes(), after_first);
+    EXPECT_TRUE(std::ranges::equal(always.image("probe.irradiance", 3, 2).values(), first.values()));
+    EXPECT_TRUE(std::ranges::equal(once.image("probe.irradiance", 3, 2).values(), first.values()));
+}
+
+// A shader that reads the maps as later passes do: row y holds roughness and cosine of the split sum, and a lobe.
+TEST_P(RadianceMapsTest, ShadersReadTheMapsAndTheSplitSum) {
+    const Scene scene = make_sky_scene();
+    Method method = plain_method();
+    method.environment.size = 64;
+    LightRun run = run_of(context(), scene, method, "environment");
+    run.run();
+    constexpr std::string_view reading_shader = R"(
+        #include "radiance_maps.glsl"
+        #include "specular_albedo.glsl"
+        layout(binding = 0) uniform samplerCube prefiltered;
+        layout(binding = 1) uniform samplerCube irradiance;
+        layout(location = 0) out vec4 result;
+        void main() {
+            vec2 at = gl_FragCoord.xy / 32.0;
+            result.xy = specular_split(at.x, max(at.y * at.y, 0.001));
+            result.z = glossy_radiance(prefiltered, normalize(vec3(at.x, 0.4, -0.3)), at.y).r;
+            result.w = diffuse_irradiance(irradiance, normalize(vec3(at.x, 0.4, at.y))).r;
+        })";
+    // Lines that the loader looks for start at the margin.
+    std::string unindented;
+    for (std::size_t i = 0, line_start = 1; i < reading_shader.size(); ++i) {
+        if (line_start && reading_shader[i] == ' ') continue;
+        line_start = reading_shader[i] == '\n';
+        unindented += reading_shader[i];
+    }
+    const Program program(context(), {"fullscreen.vert", "reading.frag"}, SpecularAlbedoTexture::defines(2),
+                          [&](std::string_view file) -> std::string_view {
+                              return file == "reading.frag" ? std::string_view(unindented) : embedded_shader(file);
+                          });
+    const GlTexture result = GlTexture::flat(context(), GL_RGBA32F, 32, 32);
+    const GlFramebuffer target(context(), std::array{GlAttachment{&result}}, {}, "reading");
+    const SpecularAlbedoTexture split(context());
+    const GlVertexArray nothing(context());
+    run.planes().get("environment.prefiltered").bind(0);
+    run.planes().get("environment.irradiance").bind(1);
+    split.bind(2);
+    target.bind();
+    program.use();
+    nothing.bind();
+    context().gl.DrawArrays(GL_TRIANGLES, 0, 3);
+    const Image image = read_back(result, 0, 4);
+    const SpecularAlbedo albedo;
+    const Radiance sky = [&](const glm::dvec3& d) { return glm::dvec3(scene.environment_radiance(d)); };
+    for (int y = 0; y < 32; ++y) {
+        for (int x = 0; x < 32; ++x) {
+            const float u = (static_cast<float>(x) + 0.5f) / 32.0f, v = (31.5f - static_cast<float>(y)) / 32.0f;
+            const glm::vec2 expected = albedo.split(u, std::max(v * v, 0.001f));
+            // Bilinear weights of 8 bits between entries that differ by a tenth at most.
+            ASSERT_NEAR(image.at(x, y, 0), expected.x, 2e-3f) << u << " " << v;
+            ASSERT_NEAR(image.at(x, y, 1), expected.y, 2e-3f) << u << " " << v;
+            if (x % 15 != 3 || y % 13 != 4) continue;
+            const double diffuse = irradiance(sky, glm::normalize(glm::dvec3(u, 0.4, v))).x;
+            EXPECT_NEAR(image.at(x, y, 3), diffuse, 0.015 * diffuse);
+            const double lobe = prefiltered(sky, glm::normalize(glm::dvec3(u, 0.4, -0.3)), v * v).x;
+            // Mixed between two levels of roughness.
+            EXPECT_NEAR(image.at(x, y, 2), lobe, 0.05 * lobe) << "roughness " << v;
+        }
+    }
+}
+
+}  // namespace
+}  // namespace plumb
