@@ -6,6 +6,8 @@
 // from farther away than a cluster is wide, too smooth close by.
 // The mean of an emission texture over a triangle stands for its texels.
 //
+// Emitters stand where the scene has them when the passes are made: a moving one shines from there on.
+//
 // Visibility is that of a few points of the emitter, whose mean over cube shadow maps multiplies all pieces.
 #pragma once
 

@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "rasterizer/scene_reach.h"
+
 namespace plumb {
 namespace {
 
@@ -21,13 +23,6 @@ float border_texels(const ShadowSettings& settings) { return 2.0f + static_cast<
 
 glm::vec4 terms_of(const Attenuation& attenuation) {
     return {attenuation.constant, attenuation.linear, attenuation.quadratic, 0.0f};
-}
-
-// Distance from `point` to the farthest corner of the box, with room for lifted receivers.
-float reach(const Bounds& box, const glm::vec3& point) {
-    if (box.empty()) return 1.0f;
-    const glm::vec3 farthest = glm::max(glm::abs(box.lower - point), glm::abs(box.upper - point));
-    return 1.01f * glm::length(farthest) + lamp_near_plane;
 }
 
 // Looks from `eye` along the unit `direction`; any roll.
@@ -94,7 +89,7 @@ DirectionalRecord make_directional(const DirectionalLight& light, const Bounds& 
 
 LightSet::LightSet(const Scene& scene, const DirectSettings& direct) {
     const ShadowSettings& settings = direct.shadow;
-    const Bounds bounds = scene.bounds();
+    const Bounds bounds = bounds_over_time(scene);
     const bool paraboloids = settings.point_map == PointShadowMap::dual_paraboloid;
     const bool linear_cubes = settings.cube_distance == CubeDistance::linear;
     // Returns the number of the cube or pair of paraboloids and the scale of its depths.

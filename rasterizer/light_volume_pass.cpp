@@ -18,7 +18,7 @@ constexpr std::array<std::pair<const char*, GLuint>, 3> shadow_units{
 // A hardware depth buffer; not a plane that a pass could read. Both layers use it in turn.
 constexpr const char* depth_stencil_name = "light_volumes.depth_stencil";
 
-constexpr int sphere_subdivisions = 1;  // 80 triangles, 13 % more area than the sphere's outline
+constexpr int sphere_subdivisions = 1;  // 80 triangles, 6 % more pixels than the sphere itself
 constexpr int cone_sides = 16;
 
 std::string plane_name(int layer) {

@@ -8,6 +8,8 @@
 
 #include <glm/gtc/constants.hpp>
 
+#include "rasterizer/scene_reach.h"
+
 namespace plumb {
 namespace {
 
@@ -15,12 +17,6 @@ namespace {
 constexpr float widest_cone = 1.1f;
 
 float strongest_channel(const glm::vec3& intensity) { return std::max({intensity.x, intensity.y, intensity.z}); }
-
-// From `position` to the scene's farthest corner.
-float reach(const Bounds& scene, const glm::vec3& position) {
-    if (scene.empty()) return 0.0f;
-    return 1.001f * glm::length(glm::max(glm::abs(scene.lower - position), glm::abs(scene.upper - position)));
-}
 
 glm::mat4 scaled_sphere(const glm::vec3& position, float radius) {
     glm::mat4 matrix(radius);
@@ -54,7 +50,7 @@ float light_radius(const Attenuation& attenuation, float strongest, float thresh
 }
 
 LightVolumes::LightVolumes(const Scene& scene, float threshold) {
-    const Bounds bounds = scene.bounds();
+    const Bounds bounds = bounds_over_time(scene);
     const auto radius_of = [&](const auto& light) {
         return std::min(light_radius(light.attenuation, strongest_channel(light.intensity), threshold),
                         reach(bounds, light.position));

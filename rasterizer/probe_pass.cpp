@@ -6,6 +6,7 @@
 #include "rasterizer/cube_faces.h"
 #include "rasterizer/pass_plan.h"
 #include "rasterizer/passes.h"
+#include "rasterizer/scene_reach.h"
 #include "rasterizer/view_uniforms.h"
 
 namespace plumb {
@@ -25,13 +26,6 @@ Method method_of_faces(const Method& method) {
     faces.direct.source = SourceOfStage::method;
     faces.radiosity.enabled = false;
     return faces;
-}
-
-float far_plane(const Scene& scene, const glm::vec3& position) {
-    const Bounds bounds = scene.bounds();
-    if (bounds.empty()) return 1.0f;
-    return 1.01f * glm::length(glm::max(glm::abs(bounds.lower - position), glm::abs(bounds.upper - position))) +
-           2.0f * near_plane;
 }
 
 Camera camera_of(const CubeFace& face, const glm::vec3& position, float farthest) {
@@ -62,7 +56,7 @@ public:
         for (const std::size_t index : plan_.order) passes_.push_back(declarations[index].create(resources));
         const ProbeSettings& probe = outer.method.probe;
         const glm::vec3 position(probe.x, probe.y, probe.z);
-        const float farthest = far_plane(outer.scene, position);
+        const float farthest = reach(bounds_over_time(outer.scene), position);
         for (const CubeFace& face : cube_faces) {
             views_.emplace_back(camera_of(face, position, farthest), probe.size, probe.size);
         }

@@ -75,6 +75,8 @@ Method method_where_it_matters(std::string_view name) {
         method.direct.shadow.point_map = PointShadowMap::dual_paraboloid;
     }
     if (name.starts_with("direct.volume_")) method.direct.local_lights = LocalLights::volume;
+    if (name == "gbuffer.layer_selection") method.gbuffer.generation = LayerGeneration::delay;
+    if (name == "radiosity.blur.depth_key_bits") method.radiosity.blur.depth_sharpness = 10.0f;
     if (name == "environment.size") method.direct.environment = EnvironmentIrradiance::cube;
     return method;
 }

@@ -96,6 +96,27 @@ TEST_P(ShadowAlternativesTest, LampsWithoutShadowsShineThroughEverything) {
     EXPECT_TRUE(LightSet(scene, method.direct).any_shadows() == false);
 }
 
+// The maps of suns and the ranges of lamps hold what moves wherever it comes.
+TEST(LightSet, MapsCoverMovingObjectsWhereverTheyCome) {
+    Scene scene = make_shadow_scene();
+    scene.point_lights.push_back({"lamp", {0.0f, 1.0f, 0.0f}, {1, 1, 1}});
+    scene.directional_lights.push_back({"sun", glm::normalize(glm::vec3(-0.4f, -1.0f, -0.6f)), {3, 2, 1}});
+    Instance& ball = scene.instances.back();
+    ball.motion.rest = ball.world_from_object;
+    ball.motion.keys = {{0.0f, {0, 0, 0}}, {1.0f, {6, 9, 0}}, {2.0f, {-3, 2, 8}}};
+    DirectSettings direct;
+    direct.shadow.cube_distance = CubeDistance::linear;
+    const LightSet lights(scene, direct);
+    const glm::vec3 centre = glm::vec3(0.7f, 0.3f, -0.8f);
+    for (int i = 0; i <= 100; ++i) {
+        const glm::vec3 at(ball.pose(0.02 * i) * glm::vec4(centre, 1.0f));
+        EXPECT_GT(lights.point_cubes[0].range, glm::length(at - scene.point_lights[0].position) + 0.3f) << i;
+        const glm::vec4 clip = lights.maps[0].clip_from_world * glm::vec4(at, 1.0f);
+        EXPECT_LT(std::max(std::abs(clip.x), std::abs(clip.y)), 1.0f) << i;
+        EXPECT_LT(std::abs(clip.z - 0.5f), 0.5f) << i;
+    }
+}
+
 // The orthographic map as rays see it: depth 1 at its near plane, 0 at its far plane, row 0 at the bottom.
 struct TracedMap {
     TracedMap(const Scene& scene, const glm::dmat4& clip_from_world, int size_in)
