@@ -11,6 +11,7 @@
 #include "experiments/convergence_report.h"
 #include "experiments/exit_code.h"
 #include "experiments/experiment_file.h"
+#include "experiments/generation.h"
 #include "experiments/interruption.h"
 #include "experiments/runner.h"
 #include "experiments/summary.h"
@@ -23,6 +24,7 @@ constexpr const char* examples = R"(Examples:
   plumbline run experiments/one_vs_two_layers.toml
   plumbline run experiments/one_vs_two_layers.toml --quick          a look at it within a minute
   plumbline run experiments/convergence.toml                     how fast the truth comes: a figure
+  plumbline run experiments/generation.toml                      second layers held against the exact ones
   plumbline run mine.toml --output out/mine --scenes-dir ~/scenes
 Exits with 1 where cells failed (they are listed), with 130 where it was interrupted.)";
 
@@ -46,7 +48,7 @@ void print_question(const std::string& title, const std::string& question) {
     if (!question.empty()) fmt::print("{}\n", question);
 }
 
-// What both kinds of experiment share.
+// What all kinds of experiment share.
 RunOptions run_options_of(const Options& options, const std::string& name) {
     RunOptions run = options.run;
     if (run.output.empty()) run.output = std::filesystem::path("out") / name;
@@ -69,6 +71,23 @@ int run_convergence(const Options& options, const CommonOptions& common, Converg
     write_convergence_files(results, run_options.output);
     fmt::print("\n{}\n{:.0f} s on {}\n", print_convergence_table(results), results.seconds, results.system.cpu);
     for (const char* file : {"convergence.csv", "convergence.json", "convergence.svg", "index.html"})
+        fmt::print("{}\n", (run_options.output / file).string());
+    return exit_fine;
+}
+
+int run_generation(const Options& options, const CommonOptions& common, GenerationExperiment experiment) {
+    if (options.quick) make_quick(experiment);
+    const RunOptions run_options = run_options_of(options, experiment.name);
+    print_question(experiment.title, experiment.question);
+    const GenerationResults results = run_generation(experiment, SceneFinder(common.scenes_dirs), run_options);
+    if (results.interrupted) {
+        fmt::print("\nInterrupted: nothing was written.\n");
+        return exit_interrupted;
+    }
+    write_generation_files(results, run_options.output);
+    fmt::print("\n{}\n{:.0f} s, {} on {}\n", print_generation_table(results), results.seconds, results.gl_renderer,
+               results.system.cpu);
+    for (const char* file : {"generation.csv", "generation.json"})
         fmt::print("{}\n", (run_options.output / file).string());
     return exit_fine;
 }
@@ -100,9 +119,15 @@ int run_comparison(const Options& options, const CommonOptions& common, Experime
 
 int run(const Options& options, const CommonOptions& common) {
     const ConfigValue table = read_config(options.experiment);
-    return kind_of(table, options.experiment) == ExperimentKind::convergence
-               ? run_convergence(options, common, parse_convergence(table, options.experiment))
-               : run_comparison(options, common, parse_experiment(table, options.experiment));
+    switch (kind_of(table, options.experiment)) {
+        case ExperimentKind::convergence:
+            return run_convergence(options, common, parse_convergence(table, options.experiment));
+        case ExperimentKind::generation:
+            return run_generation(options, common, parse_generation(table, options.experiment));
+        case ExperimentKind::comparison:
+            break;
+    }
+    return run_comparison(options, common, parse_experiment(table, options.experiment));
 }
 
 }  // namespace

@@ -47,6 +47,8 @@ ExperimentScene read_scene(ConfigReader& reader, const ExperimentScene& defaults
     return scene;
 }
 
+}  // namespace
+
 MethodList read_methods(ConfigReader& reader) {
     const ConfigValue* tables = reader.value("methods");
     if (!tables) reader.fail("", "'methods' is missing: name at least one method");
@@ -75,14 +77,14 @@ MethodList read_methods(ConfigReader& reader) {
     return methods;
 }
 
-}  // namespace
-
 ExperimentKind kind_of(const ConfigValue& table, const std::filesystem::path& file) {
     ConfigReader reader(table, file.string());
     const std::string kind = reader.text("kind", "comparison");
     if (kind == "comparison") return ExperimentKind::comparison;
     if (kind == "convergence") return ExperimentKind::convergence;
-    reader.fail("kind", fmt::format("no kind '{}'{}", kind, name_hint(kind, {"comparison", "convergence"})));
+    if (kind == "generation") return ExperimentKind::generation;
+    reader.fail("kind",
+                fmt::format("no kind '{}'{}", kind, name_hint(kind, {"comparison", "convergence", "generation"})));
 }
 
 Experiment parse_experiment(const ConfigValue& table, const std::filesystem::path& file) {

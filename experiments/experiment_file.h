@@ -55,10 +55,14 @@ struct Experiment {
 enum class ExperimentKind {
     comparison,   // methods against the truth: Experiment
     convergence,  // the path tracer against itself: ConvergenceExperiment
+    generation,   // second layers against the exact ones: GenerationExperiment
 };
 
 // What the key `kind` says; comparison where it is missing. Throws ConfigError.
 ExperimentKind kind_of(const ConfigValue& table, const std::filesystem::path& file);
+
+// The key `methods`: names of methods, or tables. Throws ConfigError.
+MethodList read_methods(ConfigReader& reader);
 
 // Throws ConfigError with file and line.
 Experiment parse_experiment(const ConfigValue& table, const std::filesystem::path& file);
