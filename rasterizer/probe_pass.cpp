@@ -1,5 +1,7 @@
 #include "rasterizer/probe_pass.h"
 
+#include <optional>
+
 #include <fmt/format.h>
 #include <glm/gtc/constants.hpp>
 
@@ -53,7 +55,10 @@ public:
         plan_ = plan_passes(declarations, {"total"});
         const PassResources resources{context_, outer.scene,    method_,    outer.quantities,
                                       planes_,  outer.programs, plan_.read, outer.geometry};
-        for (const std::size_t index : plan_.order) passes_.push_back(declarations[index].create(resources));
+        for (const std::size_t index : plan_.order) {
+            if (declarations[index].name == "shadows") shadows_ = passes_.size();
+            passes_.push_back(declarations[index].create(resources));
+        }
         const ProbeSettings& probe = outer.method.probe;
         const glm::vec3 position(probe.x, probe.y, probe.z);
         const float farthest = reach(bounds_over_time(outer.scene), position);
@@ -66,9 +71,10 @@ public:
     void draw_face(int face, const GlFramebuffer& target) const {
         const View& view = views_[static_cast<std::size_t>(face)];
         view_uniforms_.update(view, view, 0);
-        for (const std::unique_ptr<Pass>& pass : passes_) {
+        for (std::size_t i = 0; i < passes_.size(); ++i) {
+            if (face > 0 && i == shadows_) continue;  // they do not depend on the view
             view_uniforms_.bind();
-            pass->execute({view, view});
+            passes_[i]->execute({view, view});
         }
         // Both have their lower row first.
         const int size = planes_.width();
@@ -83,6 +89,7 @@ private:
     ViewUniforms view_uniforms_;
     PassPlan plan_;
     std::vector<std::unique_ptr<Pass>> passes_;
+    std::optional<std::size_t> shadows_;  // which of them draws the shadow maps
     std::vector<View> views_;
     GlFramebuffer source_;
 };
