@@ -1,7 +1,6 @@
 // `plumbline reference`: the path-traced planes of one view, in one run or in shards that are merged.
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <memory>
 #include <string>
 #include <vector>
@@ -40,20 +39,13 @@ std::string million_rays_per_second(std::uint64_t rays, double seconds) {
     return fmt::format("{:.2f} M rays/s", seconds > 0.0 ? static_cast<double>(rays) / seconds * 1e-6 : 0.0);
 }
 
-// Root of the mean variance of a plane's pixels over the root of the plane's mean square; 0 for a black one.
-double relative_error(const Frame& frame, const std::string& plane) {
-    double variance = 0.0, squares = 0.0;
-    for (const float value : frame.plane("variance." + plane).values()) variance += value;
-    for (const float value : frame.plane(plane).values()) squares += static_cast<double>(value) * value;
-    return squares > 0.0 ? std::sqrt(variance / squares) : 0.0;
-}
-
 // "standard error: ao 0.61 %, indirect 2.0 %"
 void print_error_bars(const Frame& frame, const std::vector<std::string>& planes) {
     std::string text;
     for (const std::string& plane : planes) {
         if (!frame.has("variance." + plane)) continue;
-        text += fmt::format("{}{} {:.2g} %", text.empty() ? "" : ", ", plane, 100.0 * relative_error(frame, plane));
+        text += fmt::format("{}{} {:.2g} %", text.empty() ? "" : ", ", plane,
+                            100.0 * relative_standard_error(frame, plane));
     }
     if (!text.empty()) fmt::print("standard error: {}\n", text);
 }

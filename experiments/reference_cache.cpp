@@ -109,6 +109,8 @@ std::string reference_key(const Scene& scene, const View& view, const ReferenceS
     key += fmt::format("; planes {}; ao_radius {:a}; ao_falloff {}; bounces {}; indirect_radius {:a} {}",
                        fmt::join(planes, ","), quantities.ao_radius, to_string(quantities.ao_falloff),
                        quantities.bounces, quantities.indirect_radius, to_string(quantities.indirect_falloff));
+    key += fmt::format("; reflection_radius {:a} {}", quantities.reflection_radius,
+                       to_string(quantities.reflection_falloff));
     key += fmt::format("; samples {} to {}; target_error {:a}; seed {}; minimum_separation {:a}; antialias {}",
                        settings.first_sample, settings.samples, settings.target_error, settings.seed,
                        settings.minimum_separation, settings.antialias);

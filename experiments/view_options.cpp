@@ -65,6 +65,15 @@ void ViewOptions::add_to(CLI::App& command, const std::vector<std::string>& defa
         ->check(CLI::IsMember({"hard", "quadratic", "cubic"}))
         ->capture_default_str()
         ->group(group);
+    command
+        .add_option("--reflection-radius", quantities.reflection_radius,
+                    "Only what lies within so many metres is reflected; inf: all")
+        ->check(CLI::PositiveNumber)
+        ->group(group);
+    command.add_option("--reflection-falloff", reflection_falloff, "How what is reflected counts over its distance")
+        ->check(CLI::IsMember({"hard", "quadratic", "cubic"}))
+        ->capture_default_str()
+        ->group(group);
 }
 
 Quantities ViewOptions::read_quantities() const {
@@ -72,6 +81,7 @@ Quantities ViewOptions::read_quantities() const {
     result.planes = planes;
     result.ao_falloff = falloff_from_string(ao_falloff);
     result.indirect_falloff = falloff_from_string(indirect_falloff);
+    result.reflection_falloff = falloff_from_string(reflection_falloff);
     return result;
 }
 

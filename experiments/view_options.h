@@ -22,7 +22,7 @@ struct ViewOptions {
     std::vector<std::string> planes;
     Quantities quantities;
     std::string ao_falloff = "quadratic";
-    std::string indirect_falloff = "hard";
+    std::string indirect_falloff = "hard", reflection_falloff = "hard";
     std::filesystem::path output = "out";
     bool deep = false;  // write a deep OpenEXR file too
 

@@ -47,6 +47,9 @@ struct Quantities {
     // all (what a user wants); the method's radius: what the method tried.
     float indirect_radius = std::numeric_limits<float>::infinity();
     Falloff indirect_falloff = Falloff::hard;  // how light counts that arrives from a distance within that radius
+    // The same for what a shaded point shows through its specular lobe: `reflection`.
+    float reflection_radius = std::numeric_limits<float>::infinity();
+    Falloff reflection_falloff = Falloff::hard;
 
     bool wants(std::string_view plane) const;
     // True where any wanted plane is `prefix` itself or begins with `prefix` and a dot.

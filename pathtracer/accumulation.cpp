@@ -7,6 +7,16 @@
 #include <tbb/parallel_for.h>
 
 namespace plumb {
+namespace {
+
+// From the variances of the means and from their squares less these: the noise in the square of a mean is taken off, so
+// that a dark plane does not look brighter than it is.
+double error_ratio(double variance, double square) {
+    if (variance == 0.0) return 0.0;
+    return square > 0.0 ? std::sqrt(variance / square) : HUGE_VAL;
+}
+
+}  // namespace
 
 Accumulation::Accumulation(int width, int height, const EstimationPlan& plan, bool emission_is_sampled,
                            double light_level)
@@ -163,14 +173,19 @@ double Accumulation::relative_error(const StochasticPlane& plane, int samples, c
             const glm::dvec3 a = at.half_a, b = at.half_b;
             const glm::dvec3 half_difference = 0.5 * (a - b), mean = 0.5 * (a + b);
             row.variance += glm::dot(half_difference, half_difference);
-            // The noise in the square of the mean is taken off, so that a dark plane does not look brighter than it is.
             row.square += glm::dot(mean, mean) - glm::dot(half_difference, half_difference);
         }
     });
     double variance = 0.0, square = 0.0;
     for (const Row& row : rows) variance += row.variance, square += row.square;
-    if (variance == 0.0) return 0.0;
-    return square > 0.0 ? std::sqrt(variance / square) : HUGE_VAL;
+    return error_ratio(variance, square);
+}
+
+double relative_standard_error(const Frame& frame, const std::string& plane) {
+    double variance = 0.0, square = 0.0;
+    for (const float value : frame.plane("variance." + plane).values()) variance += value;
+    for (const float value : frame.plane(plane).values()) square += static_cast<double>(value) * value;
+    return error_ratio(variance, square - variance);
 }
 
 }  // namespace plumb

@@ -8,7 +8,9 @@
 // Without --scene: the built-in scenes. Others are found in PLUMBLINE_SCENES.
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
 #include <cstdlib>
+#include <exception>
 #include <functional>
 #include <memory>
 #include <string>
@@ -247,7 +249,12 @@ int main(int argc, char** argv) {
         argc -= 2;
     }
     if (scenes.empty()) scenes = plumb::builtin_scene_names();
-    for (const std::string& scene : scenes) plumb::add_benchmarks(scene);
+    try {
+        for (const std::string& scene : scenes) plumb::add_benchmarks(scene);
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "bench_pathtracer: {}\n", error.what());
+        return 2;
+    }
     benchmark::Initialize(&argc, argv);
     if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
     benchmark::RunSpecifiedBenchmarks();

@@ -21,7 +21,7 @@ namespace plumb {
 namespace {
 
 constexpr std::array<char, 8> magic = {'P', 'L', 'U', 'M', 'B', 'R', 'E', 'F'};
-constexpr std::uint32_t format_version = 3;  // also of the samples that the sums are made of
+constexpr std::uint32_t format_version = 4;  // also of the samples that the sums are made of
 
 // As it lies in the file; the sums follow, then the checksum of all before it. Little-endian, as all machines we build
 // on.
@@ -80,6 +80,7 @@ CheckpointKey CheckpointKey::of(const Scene& scene, const TimeSpan& span, const 
     append(bytes, quantities.ao_radius), append(bytes, quantities.ao_falloff);
     append(bytes, quantities.bounces), append(bytes, quantities.indirect_radius);
     append(bytes, quantities.indirect_falloff);
+    append(bytes, quantities.reflection_radius), append(bytes, quantities.reflection_falloff);
     append(bytes, settings.seed), append(bytes, settings.minimum_separation), append(bytes, settings.antialias);
     append(bytes, settings.emitter_sampling), append(bytes, settings.points), append(bytes, settings.roulette_after);
     if (settings.oracle) {
@@ -106,15 +107,16 @@ void write_checkpoint(const std::filesystem::path& path, const CheckpointKey& ke
                              std::fflush(file.get()) == 0;
         if (!written) {
             throw ReferenceError(
-                fmt::format("cannot write checkpoint '{}': {}; free space there or choose another path", path.string(),
-                            std::strerror(errno)));
+                fmt::format("cannot write checkpoint or shard '{}': {}; free space there or choose another path",
+                            path.string(), std::strerror(errno)));
         }
     });
 }
 
 CheckpointState read_checkpoint(const std::filesystem::path& path, const CheckpointKey& key, std::span<double> sums) {
     const auto refuse = [&path](std::string_view reason) {
-        return ReferenceError(fmt::format("checkpoint '{}' {}; remove it or name another", path.string(), reason));
+        return ReferenceError(
+            fmt::format("checkpoint or shard '{}' {}; remove it or name another", path.string(), reason));
     };
     std::ifstream file(path, std::ios::binary);
     if (!file) throw refuse("cannot be opened for reading");

@@ -46,11 +46,11 @@ EnvironmentDistribution::EnvironmentDistribution(const Scene& scene) {
 }
 
 EnvironmentSample EnvironmentDistribution::sample(glm::vec2 u) const {
-    double within_row = 0.0, within_column = 0.0;
-    const std::size_t row = rows_.sample(u.y, within_row);
-    const std::size_t column = columns_[row].sample(u.x, within_column);
-    const float x = static_cast<float>((static_cast<double>(column) + within_column) / width_);
-    const float y = static_cast<float>((static_cast<double>(row) + within_row) / height_);
+    const std::size_t row = rows_.sample(u.y);
+    const DiscreteDistribution& columns = columns_[row];
+    const std::size_t column = columns.sample(u.x);
+    const float x = static_cast<float>((static_cast<double>(column) + columns.within(u.x, column)) / width_);
+    const float y = static_cast<float>((static_cast<double>(row) + rows_.within(u.y, row)) / height_);
     // The inverse of Environment::texture_coordinates.
     const float longitude = glm::two_pi<float>() * (x - 0.5f) - environment_->rotation;
     const float theta = glm::pi<float>() * y;

@@ -96,7 +96,10 @@ LightTable::LightTable(const TracedScene& traced, const EnvironmentDistribution&
     extended_ = DiscreteDistribution(powers);
     if (!extended_.empty()) {
         std::size_t index = 0;
-        for (Emitter& emitter : emitters_) emitter.probability = static_cast<float>(extended_.probability(index++));
+        for (Emitter& emitter : emitters_) {
+            emitter.probability = static_cast<float>(extended_.probability(index++));
+            emitter.area_over_probability = emitter.area / emitter.probability;
+        }
         for (Sun& sun : suns_) sun.probability = static_cast<float>(extended_.probability(index++));
         environment_probability_ = static_cast<float>(extended_.probability(index));
     }
@@ -172,12 +175,14 @@ LightTable::Emitter LightTable::moved(const Emitter& emitter, float time) const 
     const glm::vec3 scaled_normal = there.corners.scaled_normal();
     there.area = 0.5f * glm::length(scaled_normal);
     there.normal = there.area > 0.0f ? scaled_normal / (2.0f * there.area) : glm::vec3(0.0f);
+    if (there.probability > 0.0f) there.area_over_probability = there.area / there.probability;
     there.error = glm::dot(glm::abs(there.normal), there.corners.error());
     return there;
 }
 
-LightSample LightTable::sample_extended(const LightReceiver& receiver, float pick, glm::vec2 u) const {
-    std::size_t index = extended_.sample(pick);
+LightSample LightTable::sample_extended(const LightReceiver& receiver, double x, float y) const {
+    std::size_t index = extended_.sample(x);
+    const glm::vec2 u(extended_.within(x, index), y);
     if (index < emitters_.size()) {
         const Emitter& emitter = emitters_[index];
         return emitter.moves ? sample_emitter(moved(emitter, receiver.time), receiver, u)
@@ -210,9 +215,9 @@ LightSample LightTable::sample_without_extent(const LightReceiver& receiver, flo
 }
 
 LightSample LightTable::sample_emitter(const Emitter& emitter, const LightReceiver& receiver, glm::vec2 u) const {
-    const TriangleSample chosen = sample_emitting_triangle(
-        emitter.corners.a, emitter.corners.b, emitter.corners.c, emitter.normal, emitter.area / emitter.probability,
-        emitter.error, emitter.two_sided ? 1.0f : 0.0f, receiver.origin, u);
+    const TriangleSample chosen = sample_emitting_triangle(emitter.corners.a, emitter.corners.b, emitter.corners.c,
+                                                           emitter.normal, emitter.area_over_probability, emitter.error,
+                                                           emitter.two_sided ? 1.0f : 0.0f, receiver.origin, u);
     if (!(chosen.inverse_density > 0.0f)) return {};
     LightSample sample;
     sample.direction = chosen.direction, sample.shadow_ray = chosen.shadow_ray;
@@ -228,33 +233,39 @@ LightSample LightTable::sample_emitter(const Emitter& emitter, const LightReceiv
     return sample;
 }
 
-void LightTable::sample_extended(const VertexBatch& receivers, const Lanes<float>& pick, const Lanes<float>& x,
-                                 const Lanes<float>& y, LightLanes& samples) const {
+void LightTable::sample_extended(const VertexBatch& receivers, const Lanes<std::uint32_t>& x, const Lanes<float>& y,
+                                 LightLanes& samples) const {
     if (!only_plain_emitters_) {
         for (int i = 0; i < receivers.count; ++i) {
-            samples.set(
-                i, sample_extended({receivers.ray_origin.get(i), receivers.shading_normal.get(i), receivers.time[i]},
-                                   pick[i], {x[i], y[i]}));
+            const LightReceiver receiver{receivers.ray_origin.get(i), receivers.shading_normal.get(i),
+                                         receivers.time[i]};
+            samples.set(i, sample_extended(receiver, 0x1p-32 * x[i], y[i]));
         }
         return;
     }
     VectorLanes a, b, c, normal, emission;
-    Lanes<float> area, error, back_emits;
+    Lanes<float> area_over_probability, error, back_emits;
+    Lanes<std::uint32_t> chosen;
+    Lanes<float> within;
     for (int i = 0; i < receivers.count; ++i) {
-        const Emitter& emitter = emitters_[extended_.sample(pick[i])];
+        chosen[i] = static_cast<std::uint32_t>(extended_.sample(0x1p-32 * x[i]));
+        const Emitter& emitter = emitters_[chosen[i]];
         a.set(i, emitter.corners.a), b.set(i, emitter.corners.b), c.set(i, emitter.corners.c);
         normal.set(i, emitter.normal), emission.set(i, emitter.emission);
-        area[i] = emitter.area / emitter.probability, error[i] = emitter.error;
+        area_over_probability[i] = emitter.area_over_probability, error[i] = emitter.error;
         back_emits[i] = emitter.two_sided ? 1.0f : 0.0f;
     }
     for (int i = 0; i < receivers.count; ++i) {
-        const TriangleSample chosen =
-            sample_emitting_triangle(a.get(i), b.get(i), c.get(i), normal.get(i), area[i], error[i], back_emits[i],
-                                     receivers.ray_origin.get(i), {x[i], y[i]});
-        samples.direction.set(i, chosen.direction), samples.shadow_ray.set(i, chosen.shadow_ray);
-        samples.radiance.set(i, chosen.inverse_density * emission.get(i));
+        within[i] = static_cast<float>(extended_.within(0x1p-32 * x[i], chosen[i]));
+    }
+    for (int i = 0; i < receivers.count; ++i) {
+        const TriangleSample at =
+            sample_emitting_triangle(a.get(i), b.get(i), c.get(i), normal.get(i), area_over_probability[i], error[i],
+                                     back_emits[i], receivers.ray_origin.get(i), {within[i], y[i]});
+        samples.direction.set(i, at.direction), samples.shadow_ray.set(i, at.shadow_ray);
+        samples.radiance.set(i, at.inverse_density * emission.get(i));
         samples.farthest[i] = 1.0f;
-        samples.density[i] = chosen.inverse_density > 0.0f ? 1.0f / chosen.inverse_density : 0.0f;
+        samples.density[i] = at.inverse_density > 0.0f ? 1.0f / at.inverse_density : 0.0f;
     }
 }
 

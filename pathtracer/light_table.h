@@ -59,11 +59,13 @@ public:
     bool rays_find_triangles() const { return rays_find_triangles_; }
     bool has_background() const { return !suns_.empty() || !scene_.scene().environment.is_black(); }
 
-    // Of all lights with an extent.
-    LightSample sample_extended(const LightReceiver& receiver, float pick, glm::vec2 u) const;
-    // The same for each vertex.
-    void sample_extended(const VertexBatch& receivers, const Lanes<float>& pick, const Lanes<float>& x,
-                         const Lanes<float>& y, LightLanes& samples) const;
+    // Of all lights with an extent, at a point of the unit square. The first number chooses the light and, by where it
+    // fell in that light's share, is the first of two that choose the point on it: well spread points of the square
+    // stay well spread over all lights. In double, since a small share leaves few of a float's digits.
+    LightSample sample_extended(const LightReceiver& receiver, double x, float y) const;
+    // The same for each vertex; `x` in units of 2^-32.
+    void sample_extended(const VertexBatch& receivers, const Lanes<std::uint32_t>& x, const Lanes<float>& y,
+                         LightLanes& samples) const;
 
     // The weight against sample_extended of `emission` found at `hit`, on a surface with that geometric normal, by a
     // ray in unit `direction` that was drawn with `density`; 0 as density means that nothing else could have drawn it.
@@ -84,7 +86,7 @@ private:
         glm::vec3 normal;
         glm::vec3 emission;  // where it is the same everywhere
         float area, error;   // error: extent along the normal of the corners' rounding errors
-        float probability = 0.0f;
+        float probability = 0.0f, area_over_probability = 0.0f;
         std::uint32_t instance, triangle;
         bool two_sided, varies, moves;
     };

@@ -11,7 +11,7 @@ namespace {
 
 // Dimensions of the sequence that vertex k uses; the first ones choose the primary ray. Paths that start with the
 // specular lobe have their own.
-enum Use : std::uint32_t { extended_pick, extended_point, other_pick, next_direction, lobe_pick, roulette, pane_pick };
+enum Use : std::uint32_t { extended_light, other_light, next_direction, lobe_pick, roulette, pane_pick };
 constexpr std::uint32_t uses_per_vertex = 8, primary_uses = 4, specular_paths = 1u << 16, panes_apart = 1u << 20;
 constexpr std::uint32_t dimension(int vertex, bool from_specular_start, Use use) {
     return primary_uses + uses_per_vertex * static_cast<std::uint32_t>(vertex) + use +
@@ -66,17 +66,18 @@ Scattering PathIntegrator::scattering(const VertexBatch& vertices, int lane, int
 void PathIntegrator::next_event(const VertexBatch& vertices, int vertex, Start start, ShadowRays& shadow,
                                 VectorLanes& sum, int& rays) const {
     const bool specular_start = start == Start::specular;
-    Lanes<float> pick, x, y;
     LightLanes lights;
     if (lights_.has_extended_lights()) {
-        sample_numbers(vertices.samples, vertices.count, dimension(vertex, specular_start, extended_pick), pick);
-        sample_points(vertices.samples, vertices.count, dimension(vertex, specular_start, extended_point), x, y);
-        lights_.sample_extended(vertices, pick, x, y, lights);
+        Lanes<std::uint32_t> x;
+        Lanes<float> y;
+        sample_points(vertices.samples, vertices.count, dimension(vertex, specular_start, extended_light), x, y);
+        lights_.sample_extended(vertices, x, y, lights);
         connect(vertices, vertex, start, lights, shadow, sum, rays);
     }
     const bool exact_already = vertex == 0 && !specular_start && plan_.exact_lights_at_first_point;
     if (lights_.lights_without_extent() > 0 && !exact_already) {
-        sample_numbers(vertices.samples, vertices.count, dimension(vertex, specular_start, other_pick), pick);
+        Lanes<float> pick;
+        sample_numbers(vertices.samples, vertices.count, dimension(vertex, specular_start, other_light), pick);
         for (int i = 0; i < vertices.count; ++i) {
             lights.set(i, lights_.sample_without_extent(
                               {vertices.ray_origin.get(i), vertices.shading_normal.get(i), vertices.time[i]}, pick[i]));
@@ -114,8 +115,11 @@ void PathIntegrator::connect(const VertexBatch& vertices, int vertex, Start star
             const bool competes = others_compete > 0.0f && lights.density[i] > 0.0f;
             const float weight = competes ? power_heuristic(lights.density[i], value.density) : 1.0f;
             const bool open = glm::dot(vertices.geometric_normal.get(i), direction) > 0.0f;
-            brought.set(i,
-                        vertices.throughput.get(i) * value.reflected * lights.radiance.get(i) * (open ? weight : 0.0f));
+            float scale = open ? weight : 0.0f;
+            if (start == Start::specular && is_limited(start, vertex)) {
+                scale *= counted(start, lights.farthest[i] * glm::length(lights.shadow_ray.get(i)));
+            }
+            brought.set(i, vertices.throughput.get(i) * value.reflected * lights.radiance.get(i) * scale);
             brings[i] = brought.x[i] + brought.y[i] + brought.z[i];
         }
         if (!(brings[i] > 0.0f)) continue;
@@ -129,6 +133,11 @@ void PathIntegrator::connect(const VertexBatch& vertices, int vertex, Start star
     for (int i = 0; i < shadow.rays.count; ++i) {
         add_to(sum, vertices.path[shadow.vertex[i]], shadow.light.get(i) * passing.get(i));
     }
+}
+
+float PathIntegrator::counted(Start start, float distance) const {
+    return start == Start::diffuse ? evaluate_falloff(plan_.indirect_falloff, distance, plan_.indirect_radius)
+                                   : evaluate_falloff(plan_.reflection_falloff, distance, plan_.reflection_radius);
 }
 
 glm::vec3 PathIntegrator::exact_direct(const SurfacePoint& x, std::uint64_t& rays) const {
@@ -157,20 +166,21 @@ glm::vec3 PathIntegrator::exact_direct(const SurfacePoint& x, std::uint64_t& ray
 // Draws the direction in which each path leaves its vertex.
 void PathIntegrator::scatter(const VertexBatch& vertices, int vertex, Start start, ScatteredRays& scattered) const {
     const bool specular_start = start == Start::specular, leaves_diffusely = vertex == 0 && !specular_start;
-    Lanes<float> x, y, leaves;
+    Lanes<float> x, y;
+    Lanes<int> leaves;
     sample_points(vertices.samples, vertices.count, dimension(vertex, specular_start, next_direction), x, y);
     RayBatch& rays = scattered.rays;
-    float all_leave = 1.0f;
+    int leaving = 0;
     for (int i = 0; i < vertices.count; ++i) {
         const glm::vec3 normal = vertices.shading_normal.get(i);
         const glm::vec3 direction = sample_cosine_hemisphere(normal, {x[i], y[i]});
         rays.direction.set(i, direction);
         scattered.density[i] = glm::dot(normal, direction) * glm::one_over_pi<float>();
-        leaves[i] = glm::dot(vertices.geometric_normal.get(i), direction) > 0.0f ? 1.0f : 0.0f;
+        leaves[i] = glm::dot(vertices.geometric_normal.get(i), direction) > 0.0f ? 1 : 0;
+        leaving += leaves[i];
     }
-    for (int i = 0; i < vertices.count; ++i) all_leave = std::min(all_leave, leaves[i]);
     scattered.clear();
-    if (all_leave > 0.0f && (leaves_diffusely || vertices.all_plain)) {
+    if (leaving == vertices.count && (leaves_diffusely || vertices.all_plain)) {
         rays.count = vertices.count;
         scattered.all_leave = true;
         for (int i = 0; i < rays.count; ++i) scattered.vertex[i] = i;
@@ -184,7 +194,7 @@ void PathIntegrator::scatter(const VertexBatch& vertices, int vertex, Start star
     // Rays move to lanes before those that they were drawn in, never behind.
     for (int i = 0; i < vertices.count; ++i) {
         if (leaves_diffusely || vertices.is_plain[i]) {
-            if (leaves[i] > 0.0f) {
+            if (leaves[i] != 0) {
                 scattered.add(i, vertices.ray_origin.get(i), rays.direction.get(i), vertices.time[i],
                               leaves_diffusely ? glm::vec3(1.0f) : vertices.albedo.get(i), scattered.density[i]);
             } else {
@@ -209,8 +219,8 @@ void PathIntegrator::pass_panes(const VertexBatch& vertices, int vertex, Start s
     for (int i = 0; i < scattered.rays.count; ++i) {
         const glm::vec3 origin = scattered.rays.origin.get(i), direction = scattered.rays.direction.get(i);
         const SampleIndex index = vertices.samples.get(scattered.vertex[i]);
-        for (std::uint32_t pane = 0; !hits[i].missed() && !scene_.is_plain(hits[i].instance); ++pane) {
-            const SurfacePoint point = scene_.surface_point(hits[i], direction, scattered.rays.time[i]);
+        for (std::uint32_t pane = 0; !hits.missed(i) && !scene_.is_plain(hits.instance[i]); ++pane) {
+            const SurfacePoint point = scene_.surface_point(hits.get(i), direction, scattered.rays.time[i]);
             if (!point.specular.is_transparent()) break;
             const glm::vec3 specular = scene_.specular_albedo(point.specular, point.shading_normal, -direction);
             const glm::vec3 passing = point.specular.transmission * (1.0f - specular);
@@ -225,9 +235,9 @@ void PathIntegrator::pass_panes(const VertexBatch& vertices, int vertex, Start s
                 break;
             }
             scattered.weight.set(i, weight * passing / share);
-            hits[i] =
-                scene_.intersect(origin, direction, std::nextafter(hits[i].distance, infinite_distance),
-                                 scattered.rays.farthest[i], RayCoherence::incoherent, scattered.rays.time[i], layers_);
+            hits.set(i, scene_.intersect(origin, direction, std::nextafter(hits.distance[i], infinite_distance),
+                                         scattered.rays.farthest[i], RayCoherence::incoherent, scattered.rays.time[i],
+                                         layers_));
             ++rays;
         }
     }
@@ -250,11 +260,13 @@ void PathIntegrator::arrive(const VertexBatch& from, int vertex, Start start, bo
     const RayBatch& rays = scattered.rays;
     const HitBatch& hits = workspace.hits;
     const bool goes_on = vertex < plan_.bounces && (start == Start::specular || plan_.indirect);
-    const bool limited = start == Start::diffuse && vertex == 0 && plan_.indirect_radius < infinite_distance;
+    // What a diffuse lobe gets straight from an emitter is direct light, which knows no radius.
+    const bool limited = is_limited(start, vertex), emission_is_limited = limited && start == Start::specular;
     Lanes<int>& met = workspace.met;
     int met_count = 0;
     for (int i = 0; i < rays.count; ++i) {
-        if (!hits[i].missed()) met[met_count++] = i;
+        met[met_count] = i;
+        met_count += hits.missed(i) ? 0 : 1;
     }
     SurfaceLanes& points = workspace.points;
     scene_.surface_points(rays, hits, met, met_count, points);
@@ -262,18 +274,17 @@ void PathIntegrator::arrive(const VertexBatch& from, int vertex, Start start, bo
         const int i = met[j], lane = scattered.vertex[i];
         glm::vec3 throughput = from.throughput.get(lane) * scattered.weight.get(i);
         const glm::vec3 emission = points.emission.get(j), direction = rays.direction.get(i);
+        const float counts = limited ? counted(start, hits.distance[i]) : 1.0f;
+        if (emission_is_limited) throughput *= counts;
         if (looks_for_emitters && emission != glm::vec3(0.0f)) {
-            const float weight = lights_.emission_weight(hits[i], points.geometric_normal.get(j), direction,
+            const float weight = lights_.emission_weight(hits.get(i), points.geometric_normal.get(j), direction,
                                                          scattered.density[i], rays.time[i]);
             add_to(sum, from.path[lane], throughput * emission * weight);
         }
         if (!goes_on) continue;
-        if (limited) {
-            const float counts = evaluate_falloff(plan_.indirect_falloff, hits[i].distance, plan_.indirect_radius);
-            if (!(counts > 0.0f)) continue;
-            throughput *= counts;
-        }
-        const bool plain = scene_.is_plain(hits[i].instance);
+        if (!(counts > 0.0f)) continue;
+        if (limited && !emission_is_limited) throughput *= counts;
+        const bool plain = scene_.is_plain(hits.instance[i]);
         glm::vec3 albedo = points.albedo.get(j);
         if (plain && albedo == glm::vec3(0.0f)) continue;
         if (!survives_roulette(from.samples.get(lane), vertex + 1, start, throughput)) continue;
@@ -288,7 +299,7 @@ void PathIntegrator::arrive(const VertexBatch& from, int vertex, Start start, bo
         next.is_plain[to] = plain;
         next.all_plain &= plain;
         if (!plain) {
-            next.specular[to] = {scene_.surface_point(hits[i], direction, rays.time[i]).specular, -direction,
+            next.specular[to] = {scene_.surface_point(hits.get(i), direction, rays.time[i]).specular, -direction,
                                  glm::vec3(0.0f)};
             albedo *=
                 1.0f - scene_.specular_albedo(next.specular[to].surface, points.shading_normal.get(j), -direction);
@@ -329,6 +340,7 @@ void PathIntegrator::follow(const VertexBatch& starts, Start start, PathWorkspac
         }
         estimate.rays += rays.count;
         const auto path_of = [&](int i) { return vertices->path[scattered.vertex[i]]; };
+        const bool background_counts = diffuse_start || !is_limited(start, k);
         const auto gather_background = [&](int i) {
             const glm::vec3 found = lights_.weighted_background(rays.direction.get(i), scattered.density[i]);
             if (found == glm::vec3(0.0f)) return;
@@ -360,15 +372,15 @@ void PathIntegrator::follow(const VertexBatch& starts, Start start, PathWorkspac
         scene_.intersect(rays, hits, layers_);
         if (tests_visibility) {
             for (int i = 0; i < rays.count; ++i) {
-                if (hits[i].missed()) continue;
-                estimate.ambient_visibility[path_of(i)] = 1.0f - obscurance(hits[i].distance);
+                if (hits.missed(i)) continue;
+                estimate.ambient_visibility[path_of(i)] = 1.0f - obscurance(hits.distance[i]);
             }
         }
         if (!looks_for_emitters && !goes_on) return;
         if (scene_.has_transparency()) pass_panes(*vertices, k, start, scattered, hits, estimate.rays);
-        if (looks_for_emitters && lights_.has_background()) {
+        if (looks_for_emitters && lights_.has_background() && background_counts) {
             for (int i = 0; i < rays.count; ++i) {
-                if (hits[i].missed()) gather_background(i);
+                if (hits.missed(i)) gather_background(i);
             }
         }
         next->clear();

@@ -29,6 +29,8 @@ struct EstimationPlan {
     Falloff ao_falloff = Falloff::quadratic;
     float indirect_radius = infinite_distance;
     Falloff indirect_falloff = Falloff::hard;
+    float reflection_radius = infinite_distance;
+    Falloff reflection_falloff = Falloff::hard;
     // Lights without extent reach x without randomness through pixel centres; they are added exactly, once per pixel.
     bool exact_lights_at_first_point = true;
     int roulette_after = 0;  // bounces that every path is given; 0: no roulette
@@ -68,6 +70,12 @@ private:
     void scatter(const VertexBatch& vertices, int vertex, Start start, ScatteredRays& scattered) const;
     void pass_panes(const VertexBatch& vertices, int vertex, Start start, ScatteredRays& scattered, HitBatch& hits,
                     int& rays) const;
+    // How much what arrives at the first vertex from that far counts; infinity: from the background.
+    float counted(Start start, float distance) const;
+    bool is_limited(Start start, int vertex) const {
+        const float radius = start == Start::diffuse ? plan_.indirect_radius : plan_.reflection_radius;
+        return vertex == 0 && radius < infinite_distance;
+    }
     bool survives_roulette(const SampleIndex& sample, int vertex, Start start, glm::vec3& throughput) const;
     void follow(const VertexBatch& starts, Start start, PathWorkspace& workspace, BatchEstimate& estimate) const;
     // Adds what each path finds where its ray arrived, and to `next` the vertices of those that go on.

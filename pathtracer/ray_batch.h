@@ -1,7 +1,7 @@
 // Rays of many paths and what they meet.
 #pragma once
 
-#include <array>
+#include <cstdint>
 
 #include "pathtracer/lanes.h"
 #include "pathtracer/surface_hit.h"
@@ -25,11 +25,25 @@ struct RayBatch {
     }
 };
 
-using HitBatch = std::array<SurfaceHit, most_lanes>;
+// What the rays of a batch met; as SurfaceHit says.
+struct HitBatch {
+    Lanes<std::uint32_t> instance, triangle;
+    Lanes<float> u, v, distance;
+
+    PLUMBLINE_INLINE bool missed(int lane) const { return instance[lane] == SurfaceHit::nothing; }
+    SurfaceHit get(int lane) const {
+        if (missed(lane)) return {};
+        return {instance[lane], triangle[lane], u[lane], v[lane], distance[lane]};
+    }
+    void set(int lane, const SurfaceHit& hit) {
+        instance[lane] = hit.instance, triangle[lane] = hit.triangle;
+        u[lane] = hit.u, v[lane] = hit.v, distance[lane] = hit.distance;
+    }
+};
 
 // The geometry of the points that rays met, and their diffuse and emitted light.
 struct SurfaceLanes {
-    VectorLanes ray_origin, geometric_normal, shading_normal, albedo, emission;
+    VectorLanes position, ray_origin, geometric_normal, shading_normal, albedo, emission;
 };
 
 }  // namespace plumb

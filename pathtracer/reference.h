@@ -150,6 +150,10 @@ private:
     std::unique_ptr<Implementation> implementation_;
 };
 
+// RMS standard error of a plane over its RMS, from the frame of a reference: what ReferenceSettings::target_error
+// bounds. 0 for a plane without noise, infinite for one of nothing but noise.
+double relative_standard_error(const Frame& frame, const std::string& plane);
+
 // 1 where a pixel's 3x3 neighbourhood holds an edge: other instances, hits beside misses, a step of more than a pixel's
 // width off the pixel's tangent plane, or normals more than 15 degrees apart; else 0. Two renderers may rightly differ
 // there by rounding alone. `layer` counts from 1.

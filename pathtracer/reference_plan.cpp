@@ -63,9 +63,10 @@ void check(const View& view, const ReferenceSettings& settings) {
         throw ReferenceError(
             fmt::format("ao radius {} m must be positive; infinity means the whole hemisphere", quantities.ao_radius));
     }
-    if (!(quantities.indirect_radius > 0.0f)) {
-        throw ReferenceError(
-            fmt::format("indirect radius {} m must be positive; infinity means no limit", quantities.indirect_radius));
+    for (const auto& [name, radius] :
+         {std::pair{"indirect", quantities.indirect_radius}, std::pair{"reflection", quantities.reflection_radius}}) {
+        if (radius > 0.0f) continue;
+        throw ReferenceError(fmt::format("{} radius {} m must be positive; infinity means no limit", name, radius));
     }
     if (quantities.bounces < 0 || quantities.bounces > most_bounces) {
         throw ReferenceError(
@@ -124,6 +125,8 @@ RenderPlan make_plan(const TracedScene& scene, const View& view, const Reference
     estimation.ao_falloff = quantities.ao_falloff;
     estimation.indirect_radius = quantities.indirect_radius;
     estimation.indirect_falloff = quantities.indirect_falloff;
+    estimation.reflection_radius = quantities.reflection_radius;
+    estimation.reflection_falloff = quantities.reflection_falloff;
     estimation.roulette_after = settings.roulette_after;
     plan.primary_rays_are_sampled =
         settings.antialias || view.camera().aperture_radius > 0.0f || settings.view_at_shutter_opening.has_value();

@@ -183,12 +183,12 @@ void ReferenceRun::add_spread_samples(Scratch& scratch) {
     scratch.rays += static_cast<std::uint64_t>(rays.count);
     for (int i = 0; i < rays.count; ++i) {
         const glm::vec3 direction = rays.direction.get(i);
-        if (hits[i].missed()) {
+        if (hits.missed(i)) {
             accumulation_.add_background(scratch.primary_pixel[i], scratch.primary_half[i],
                                          scene_.scene().environment_radiance(direction));
             continue;
         }
-        const SurfacePoint point = scene_.surface_point(hits[i], direction, rays.time[i]);
+        const SurfacePoint point = scene_.surface_point(hits.get(i), direction, rays.time[i]);
         const int lane = scratch.starts.count;
         scratch.samples.pixel[lane] = scratch.primary_pixel[i];
         scratch.samples.half[lane] = scratch.primary_half[i];
@@ -378,6 +378,8 @@ ReferenceResult ReferenceRun::finish(bool complete) {
                           {"ao_falloff", std::string(to_string(quantities.ao_falloff))},
                           {"indirect_radius", fmt::format("{}", quantities.indirect_radius)},
                           {"indirect_falloff", std::string(to_string(quantities.indirect_falloff))},
+                          {"reflection_radius", fmt::format("{}", quantities.reflection_radius)},
+                          {"reflection_falloff", std::string(to_string(quantities.reflection_falloff))},
                           {"minimum_separation", fmt::format("{}", settings_.minimum_separation)},
                           {"antialias", settings_.antialias ? "yes" : "no"},
                           {"points", settings_.points == SamplePoints::sobol ? "sobol" : "random"},

@@ -48,15 +48,15 @@ PLUMBLINE_INLINE std::uint32_t laine_karras_permutation(std::uint32_t x, std::ui
     return x;
 }
 
-// The second Sobol dimension of an index whose bits are already reversed (the first dimension): the product with
-// Pascal's triangle modulo 2, which is a Kronecker power of [[1, 1], [0, 1]] and so five masked shifts.
-PLUMBLINE_INLINE std::uint32_t second_sobol_dimension(std::uint32_t reversed_index) {
-    std::uint32_t x = reversed_index;
-    x ^= x << 16;
-    x ^= (x & 0x00ff00ffu) << 8;
-    x ^= (x & 0x0f0f0f0fu) << 4;
-    x ^= (x & 0x33333333u) << 2;
-    x ^= (x & 0x55555555u) << 1;
+// The second Sobol dimension of an index, bits reversed: the product with Pascal's triangle modulo 2, which is a
+// Kronecker power of [[1, 0], [1, 1]] and so five masked shifts.
+PLUMBLINE_INLINE std::uint32_t reversed_second_sobol_dimension(std::uint32_t index) {
+    std::uint32_t x = index;
+    x ^= x >> 16;
+    x ^= (x & 0xff00ff00u) >> 8;
+    x ^= (x & 0xf0f0f0f0u) >> 4;
+    x ^= (x & 0xccccccccu) >> 2;
+    x ^= (x & 0xaaaaaaaau) >> 1;
     return x;
 }
 
@@ -69,17 +69,25 @@ struct SampleIndex {
     std::uint32_t reversed_index = 0;  // within the half, bits reversed
 };
 
+// A point of the unit square in units of 2^-32.
+struct FixedPoint {
+    std::uint32_t x, y;
+};
+
 // The point of `sample` in a dimension given as mix_word(dimension). All in 32 bits and without branches, so that a
 // loop over lanes becomes vector code.
-PLUMBLINE_INLINE glm::vec2 sobol_point(const SampleIndex& sample, std::uint32_t mixed_dimension) {
-    const auto scrambled = [](std::uint32_t x, std::uint32_t seed) {
-        return to_unit_interval(reverse_bits(laine_karras_permutation(reverse_bits(x), seed)));
-    };
+PLUMBLINE_INLINE FixedPoint fixed_sobol_point(const SampleIndex& sample, std::uint32_t mixed_dimension) {
     const std::uint32_t a = mix_word(mix_word(sample.key_low ^ mixed_dimension) + sample.key_high);
     const std::uint32_t b = mix_word(a + 0x9e3779b9u), c = mix_word(b + 0x9e3779b9u);
-    // The shuffled index, reversed, is the first Sobol dimension.
-    const std::uint32_t index = laine_karras_permutation(sample.reversed_index, a);
-    return {scrambled(index, b), scrambled(second_sobol_dimension(index), c)};
+    // The permutation takes bits reversed, and the first Sobol dimension is the index reversed: back to the index.
+    const std::uint32_t index = reverse_bits(laine_karras_permutation(sample.reversed_index, a));
+    return {reverse_bits(laine_karras_permutation(index, b)),
+            reverse_bits(laine_karras_permutation(reversed_second_sobol_dimension(index), c))};
+}
+
+PLUMBLINE_INLINE glm::vec2 sobol_point(const SampleIndex& sample, std::uint32_t mixed_dimension) {
+    const FixedPoint point = fixed_sobol_point(sample, mixed_dimension);
+    return {to_unit_interval(point.x), to_unit_interval(point.y)};
 }
 
 // The samples of many paths side by side.
@@ -151,7 +159,17 @@ inline void sample_points(const SampleLanes& samples, int count, std::uint32_t d
     }
 }
 
-// The same for one number each.
+// The same with every bit of the first number.
+inline void sample_points(const SampleLanes& samples, int count, std::uint32_t dimension, Lanes<std::uint32_t>& x,
+                          Lanes<float>& y) {
+    const std::uint32_t mixed_dimension = mix_word(dimension);
+    for (int i = 0; i < count; ++i) {
+        const FixedPoint point = fixed_sobol_point(samples.get(i), mixed_dimension);
+        x[i] = point.x, y[i] = to_unit_interval(point.y);
+    }
+}
+
+// One number each.
 inline void sample_numbers(const SampleLanes& samples, int count, std::uint32_t dimension, Lanes<float>& x) {
     const std::uint32_t mixed_dimension = mix_word(dimension);
     for (int i = 0; i < count; ++i) x[i] = sobol_point(samples.get(i), mixed_dimension).x;

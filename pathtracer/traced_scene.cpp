@@ -75,30 +75,24 @@ SpecularSurface specular_side(const SurfaceSample& sample) {
 // Inlined where surfaces are looked up by the batch.
 PLUMBLINE_INLINE void TracedScene::Part::corners(std::uint32_t triangle, float time, TracedTriangle& corners) const {
     const std::uint32_t* indices = triangles + 3 * static_cast<std::size_t>(triangle);
-    const auto position = [](const float* from, std::size_t vertex) {
-        return glm::vec3(from[3 * vertex], from[3 * vertex + 1], from[3 * vertex + 2]);
-    };
     if (steps == 1) {
-        corners.a = position(still, indices[0]), corners.b = position(still, indices[1]),
-        corners.c = position(still, indices[2]);
+        corners.a = positions[indices[0]], corners.b = positions[indices[1]], corners.c = positions[indices[2]];
         return;
     }
     const MotionStep at(time, steps);
-    const auto moved = [&](std::uint32_t vertex) {
-        return at.mix(position(positions[at.first], vertex), position(positions[at.first + 1], vertex));
-    };
+    const glm::vec3* first = positions + static_cast<std::size_t>(at.first) * vertex_count;
+    const auto moved = [&](std::uint32_t vertex) { return at.mix(first[vertex], first[vertex_count + vertex]); };
     corners.a = moved(indices[0]), corners.b = moved(indices[1]), corners.c = moved(indices[2]);
 }
 
 glm::vec3 TracedScene::Part::normal_sum(std::uint32_t triangle, float u, float v, float time) const {
-    if (normals.empty()) return glm::vec3(0.0f);
     const std::uint32_t* indices = triangles + 3 * static_cast<std::size_t>(triangle);
     const auto interpolated = [&](const glm::vec3* from) {
         return (1.0f - u - v) * from[indices[0]] + u * from[indices[1]] + v * from[indices[2]];
     };
-    if (steps == 1) return interpolated(normals.data());
+    if (steps == 1) return interpolated(normals);
     const MotionStep at(time, steps);
-    const glm::vec3* first = normals.data() + static_cast<std::size_t>(at.first) * vertex_count;
+    const glm::vec3* first = normals + static_cast<std::size_t>(at.first) * vertex_count;
     return at.mix(interpolated(first), interpolated(first + vertex_count));
 }
 
@@ -176,12 +170,11 @@ void TracedScene::intersect(const RayBatch& rays, HitBatch& hits, const OracleLa
         std::fill_n(packet.hit.geomID, width, RTC_INVALID_GEOMETRY_ID);
         std::fill_n(packet.hit.instID[0], width, RTC_INVALID_GEOMETRY_ID);
         query.intersect(scene, valid.data(), packet);
-        for (int i = 0; i < std::min(width, rays.count - first); ++i) {
-            const bool missed = packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID;
-            hits[first + i] = missed ? SurfaceHit{}
-                                     : SurfaceHit{packet.hit.geomID[i], packet.hit.primID[i], packet.hit.u[i],
-                                                  packet.hit.v[i], packet.ray.tfar[i]};
-        }
+        static_assert(RTC_INVALID_GEOMETRY_ID == SurfaceHit::nothing && most_lanes % width == 0);
+        std::copy_n(packet.hit.geomID, width, &hits.instance[first]);
+        std::copy_n(packet.hit.primID, width, &hits.triangle[first]);
+        std::copy_n(packet.hit.u, width, &hits.u[first]), std::copy_n(packet.hit.v, width, &hits.v[first]);
+        std::copy_n(packet.ray.tfar, width, &hits.distance[first]);
     }
 }
 
@@ -249,39 +242,75 @@ SurfacePoint TracedScene::surface_point(const SurfaceHit& hit, const glm::vec3& 
     return point;
 }
 
+// The corners of triangles that were hit, and the sums of their normals at the points.
+struct CornerLanes {
+    VectorLanes a, b, c, normal_sum;
+};
+
+// Where nothing moves, vertices are found by their numbers alone. Lanes do not depend on each other.
+void TracedScene::gather_corners(const HitBatch& hits, const Lanes<int>& lanes, int count, CornerLanes& corners) const {
+    const int *first_triangle = table_.first_triangle.data(), *first_vertex = table_.first_vertex.data();
+    const std::uint32_t* triangles = triangles_.data();
+    const float *positions = &positions_.data()->x, *normals = &normals_.data()->x;
+#pragma GCC ivdep
+    for (int i = 0; i < count; ++i) {
+        const auto instance = static_cast<int>(hits.instance[lanes[i]]);
+        const int triangle = 3 * (first_triangle[instance] + static_cast<int>(hits.triangle[lanes[i]]));
+        const int a = 3 * (first_vertex[instance] + static_cast<int>(triangles[triangle])),
+                  b = 3 * (first_vertex[instance] + static_cast<int>(triangles[triangle + 1])),
+                  c = 3 * (first_vertex[instance] + static_cast<int>(triangles[triangle + 2]));
+        const float u = hits.u[lanes[i]], v = hits.v[lanes[i]], w = 1.0f - u - v;
+        const auto at = [](const float* from, int first) {
+            return glm::vec3(from[first], from[first + 1], from[first + 2]);
+        };
+        corners.a.set(i, at(positions, a)), corners.b.set(i, at(positions, b)), corners.c.set(i, at(positions, c));
+        corners.normal_sum.set(i, w * at(normals, a) + u * at(normals, b) + v * at(normals, c));
+    }
+}
+
 void TracedScene::surface_points(const RayBatch& rays, const HitBatch& hits, const Lanes<int>& lanes, int count,
                                  SurfaceLanes& points) const {
-    VectorLanes a, b, c, normals, directions;
-    Lanes<float> u, v, side;
-    for (int i = 0; i < count; ++i) {
-        const SurfaceHit& hit = hits[lanes[i]];
-        const Part& part = parts_[hit.instance];
-        TracedTriangle corners;
-        part.corners(hit.triangle, rays.time[lanes[i]], corners);
-        a.set(i, corners.a), b.set(i, corners.b), c.set(i, corners.c);
-        normals.set(i, part.normal_sum(hit.triangle, hit.u, hit.v, rays.time[lanes[i]]));
-        directions.set(i, rays.direction.get(lanes[i]));
-        u[i] = hit.u, v[i] = hit.v;
+    CornerLanes corners;
+    if (!anything_moves_) {
+        gather_corners(hits, lanes, count, corners);
+    } else {
+        for (int i = 0; i < count; ++i) {
+            const SurfaceHit hit = hits.get(lanes[i]);
+            const Part& part = parts_[hit.instance];
+            TracedTriangle triangle;
+            part.corners(hit.triangle, rays.time[lanes[i]], triangle);
+            corners.a.set(i, triangle.a), corners.b.set(i, triangle.b), corners.c.set(i, triangle.c);
+            corners.normal_sum.set(i, part.normal_sum(hit.triangle, hit.u, hit.v, rays.time[lanes[i]]));
+        }
     }
+    Lanes<float> lit;
+    const float *back_is_lit = table_.back_is_lit.data(), *albedos = &table_.albedo.data()->x,
+                *emissions = &table_.emission.data()->x;
+#pragma GCC ivdep
     for (int i = 0; i < count; ++i) {
+        const int lane = lanes[i];
         const PointGeometry point =
-            point_geometry({a.get(i), b.get(i), c.get(i), {}, {}, {}}, u[i], v[i], normals.get(i), directions.get(i));
+            point_geometry({corners.a.get(i), corners.b.get(i), corners.c.get(i), {}, {}, {}}, hits.u[lane],
+                           hits.v[lane], corners.normal_sum.get(i), rays.direction.get(lane));
+        points.position.set(i, point.position);
         points.ray_origin.set(i, point.ray_origin);
         points.geometric_normal.set(i, point.geometric_normal);
         points.shading_normal.set(i, point.shading_normal);
-        side[i] = point.side;
+        const auto instance = static_cast<int>(hits.instance[lane]);
+        const float lit_from_behind = back_is_lit[instance];
+        lit[i] = point.side > 0.0f ? 1.0f : lit_from_behind;
+        const auto at = [instance](const float* from) {
+            return glm::vec3(from[3 * instance], from[3 * instance + 1], from[3 * instance + 2]);
+        };
+        points.albedo.set(i, lit[i] * at(albedos));
+        points.emission.set(i, lit[i] * at(emissions));
     }
+    if (!has_textures_) return;
     for (int i = 0; i < count; ++i) {
-        const SurfaceHit& hit = hits[lanes[i]];
-        const Part& part = parts_[hit.instance];
-        if (side[i] < 0.0f && !part.material->two_sided) {
-            points.albedo.set(i, glm::vec3(0.0f)), points.emission.set(i, glm::vec3(0.0f));
-        } else if (part.has_textures) {
-            const SurfaceSample sample = part.sample(hit);
-            points.albedo.set(i, sample.albedo), points.emission.set(i, sample.emission);
-        } else {
-            points.albedo.set(i, part.constant.albedo), points.emission.set(i, part.constant.emission);
-        }
+        const Part& part = parts_[hits.instance[lanes[i]]];
+        if (!part.has_textures) continue;
+        const SurfaceSample sample = part.sample(hits.get(lanes[i]));
+        points.albedo.set(i, lit[i] * sample.albedo), points.emission.set(i, lit[i] * sample.emission);
     }
 }
 

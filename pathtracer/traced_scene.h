@@ -19,6 +19,7 @@ namespace plumb {
 
 class OracleLayers;
 class RayRecorder;
+struct CornerLanes;
 
 class TracedScene {
 public:
@@ -52,7 +53,8 @@ public:
     void transmittance(const RayBatch& rays, VectorLanes& fraction) const;
 
     SurfacePoint surface_point(const SurfaceHit& hit, const glm::vec3& ray_direction, float time = now) const;
-    // The same for the rays listed in `lanes`, the i-th of them into lane i of `points`, without specular parts.
+    // The same for the rays listed in `lanes`, which met something, the i-th of them into lane i of `points`, without
+    // specular parts.
     void surface_points(const RayBatch& rays, const HitBatch& hits, const Lanes<int>& lanes, int count,
                         SurfaceLanes& points) const;
     // False where the surface may have a specular lobe or let light pass.
@@ -71,15 +73,14 @@ public:
     void set_recorder(RayRecorder* recorder) { recorder_ = recorder; }
 
 private:
-    // One instance; Embree owns positions and triangles. With a mirroring transform the second and third corner are
-    // swapped, so that the winding still agrees with the normals.
+    // One instance. With a mirroring transform the second and third corner are swapped, so that the winding still
+    // agrees with the normals.
     struct Part {
         const Scene* scene = nullptr;
         const Material* material = nullptr;
-        const float* still = nullptr;                 // 3 per vertex, of the last step
-        std::vector<const float*> positions;          // the same for each step of the motion
+        const glm::vec3* positions = nullptr;         // pose after pose
+        const glm::vec3* normals = nullptr;           // the same; all zero: face normals
         const std::uint32_t* triangles = nullptr;     // 3 per triangle
-        std::vector<glm::vec3> normals;               // world space, step after step; empty: face normals
         const std::vector<glm::vec2>* uvs = nullptr;  // null where there are none
         std::uint32_t triangle_count = 0;
         std::size_t vertex_count = 0;
@@ -94,8 +95,12 @@ private:
         SurfaceSample sample(const SurfaceHit& hit) const;
     };
 
+    static int steps_of(const Instance& instance, const TimeSpan& span);
+    void reserve(const TimeSpan& span);
     void add(std::uint32_t index, const TimeSpan& span);
-    void set_positions(RTCGeometry geometry, const Instance& instance, Part& part, const TimeSpan& span);
+    void attach(std::uint32_t index);
+    void gather_corners(const HitBatch& hits, const Lanes<int>& lanes, int count, CornerLanes& corners) const;
+    void add_vertices(const Instance& instance, const Part& part, const TimeSpan& span);
     RTCScene scene_for(const OracleLayers* layers) const;  // the tree that takes a filter where there are layers
     static EmbreeQuery query_for(const OracleLayers* layers, RayCoherence coherence = RayCoherence::incoherent);
     static SurfaceHit intersect(EmbreeQuery& query, RTCScene scene, const glm::vec3& origin, const glm::vec3& direction,
@@ -108,8 +113,18 @@ private:
     RTCDevice device_ = nullptr;
     RTCScene embree_scene_ = nullptr;
     std::vector<Part> parts_;
+    // Of all parts, one after the other, so that a loop over lanes finds any of them by a number; Embree reads them
+    // too.
+    std::vector<glm::vec3> positions_, normals_;  // world space
+    std::vector<std::uint32_t> triangles_;        // vertices within the part
+    struct PartTable {
+        std::vector<int> first_vertex, first_triangle;
+        std::vector<float> back_is_lit;  // 1 or 0
+        std::vector<glm::vec3> albedo, emission;
+    } table_;
     std::optional<SpecularAlbedo> specular_albedo_;  // where there are specular lobes
-    bool has_specular_lobes_ = false, has_transparency_ = false, has_delta_lobes_ = false, anything_moves_ = false;
+    bool has_textures_ = false, has_specular_lobes_ = false, has_transparency_ = false, has_delta_lobes_ = false,
+         anything_moves_ = false;
     RayRecorder* recorder_ = nullptr;
     mutable RTCScene layered_scene_ = nullptr;  // made when the first oracle asks
     mutable std::once_flag layered_scene_made_;

@@ -1,6 +1,7 @@
 // How a TracedScene is built; what is asked of it stands in traced_scene.cpp.
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 
 #include <fmt/format.h>
 #include <glm/gtc/matrix_inverse.hpp>
@@ -62,7 +63,9 @@ TracedScene::TracedScene(const Scene& scene, const TimeSpan& span)
     // Robust: no ray slips between two triangles that share an edge.
     rtcSetSceneFlags(embree_scene_, RTC_SCENE_FLAG_ROBUST);
     rtcSetSceneBuildQuality(embree_scene_, RTC_BUILD_QUALITY_HIGH);
+    reserve(span);
     for (std::uint32_t i = 0; i < parts_.size(); ++i) add(i, span);
+    for (std::uint32_t i = 0; i < parts_.size(); ++i) attach(i);
     if (has_specular_lobes_) specular_albedo_.emplace();
     rtcCommitScene(embree_scene_);
     check_embree(device_, scene_, "building its tree");
@@ -74,33 +77,48 @@ TracedScene::~TracedScene() {
     rtcReleaseDevice(device_);
 }
 
-void TracedScene::set_positions(RTCGeometry geometry, const Instance& instance, Part& part, const TimeSpan& span) {
+int TracedScene::steps_of(const Instance& instance, const TimeSpan& span) {
+    // Poses of a moving instance over the time span: a quarter turn between two of them bulges by less than a fiftieth
+    // of its radius.
+    constexpr int poses = 9;
+    return instance.moves() && span.end > span.begin ? poses : 1;
+}
+
+// Room for all vertices at once: parts point into it.
+void TracedScene::reserve(const TimeSpan& span) {
+    std::size_t vertices = 0, triangles = 0;
+    for (const Instance& instance : scene_.instances) {
+        const Mesh& mesh = scene_.meshes[instance.mesh];
+        vertices += mesh.positions.size() * static_cast<std::size_t>(steps_of(instance, span));
+        triangles += mesh.triangles.size();
+    }
+    // Coordinates are numbered by int.
+    constexpr std::size_t most = std::numeric_limits<int>::max() / 3;
+    if (vertices > most || triangles > most) {
+        throw ReferenceError(
+            fmt::format("scene '{}': {} vertices and {} triangles in all instances; references take at "
+                        "most {} of each: leave parts out",
+                        scene_.name, vertices, triangles, most));
+    }
+    // Embree reads 16 bytes from each position on.
+    positions_.reserve(vertices + 1), normals_.reserve(vertices);
+    triangles_.reserve(3 * triangles);
+}
+
+void TracedScene::add_vertices(const Instance& instance, const Part& part, const TimeSpan& span) {
     const Mesh& mesh = scene_.meshes[instance.mesh];
-    part.normals.reserve(mesh.normals.size() * static_cast<std::size_t>(part.steps));
-    rtcSetGeometryTimeStepCount(geometry, static_cast<unsigned>(part.steps));
     for (int step = 0; step < part.steps; ++step) {
         const double at = part.steps == 1 ? 1.0 : static_cast<double>(step) / (part.steps - 1);
         const glm::mat4 pose =
             part.steps == 1 ? instance.world_from_object : instance.pose(span.begin + at * (span.end - span.begin));
-        auto* positions =
-            static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, static_cast<unsigned>(step),
-                                                        RTC_FORMAT_FLOAT3, 3 * sizeof(float), mesh.positions.size()));
-        check_embree(device_, scene_, fmt::format("taking instance '{}'", instance.name));
-        for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
-            const glm::vec3 world(pose * glm::vec4(mesh.positions[i], 1.0f));
-            for (int axis = 0; axis < 3; ++axis) positions[3 * i + axis] = world[axis];
-        }
-        part.positions.push_back(positions);
-        part.still = positions;
+        for (const glm::vec3& position : mesh.positions) positions_.emplace_back(pose * glm::vec4(position, 1.0f));
         const glm::mat3 normal_matrix = glm::inverseTranspose(glm::mat3(pose));
-        for (const glm::vec3& normal : mesh.normals) part.normals.push_back(glm::normalize(normal_matrix * normal));
+        for (const glm::vec3& normal : mesh.normals) normals_.push_back(glm::normalize(normal_matrix * normal));
+        normals_.resize(positions_.size(), glm::vec3(0.0f));
     }
 }
 
 void TracedScene::add(std::uint32_t index, const TimeSpan& span) {
-    // Poses of a moving instance over the time span: a quarter turn between two of them bulges by less than a fiftieth
-    // of its radius.
-    constexpr int poses = 9;
     const Instance& instance = scene_.instances[index];
     const Mesh& mesh = scene_.meshes[instance.mesh];
     Part& part = parts_[index];
@@ -108,13 +126,14 @@ void TracedScene::add(std::uint32_t index, const TimeSpan& span) {
     part.material = &scene_.materials[mesh.material];
     part.triangle_count = static_cast<std::uint32_t>(mesh.triangles.size());
     part.vertex_count = mesh.positions.size();
-    part.steps = instance.moves() && span.end > span.begin ? poses : 1;
+    part.steps = steps_of(instance, span);
     part.uvs = mesh.uvs.empty() ? nullptr : &mesh.uvs;
     part.has_textures = part.material->base_colour_texture != no_texture ||
                         part.material->metallic_roughness_texture != no_texture ||
                         part.material->emission_texture != no_texture;
     part.is_plain = !part.material->has_specular_lobe() && !part.material->is_transparent();
     anything_moves_ |= part.steps > 1;
+    has_textures_ |= part.has_textures;
     has_specular_lobes_ |= part.material->has_specular_lobe();
     has_transparency_ |= part.material->is_transparent();
     // A texture only lowers the roughness.
@@ -124,20 +143,36 @@ void TracedScene::add(std::uint32_t index, const TimeSpan& span) {
     has_delta_lobes_ |= may_be_mirror || part.material->is_transparent();
     if (!part.has_textures) part.constant = scene_.surface(*part.material, {});
 
-    RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-    set_positions(geometry, instance, part, span);
-    auto* triangles = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), mesh.triangles.size()));
-    check_embree(device_, scene_, fmt::format("taking instance '{}'", instance.name));
+    table_.first_vertex.push_back(static_cast<int>(positions_.size()));
+    table_.first_triangle.push_back(static_cast<int>(triangles_.size() / 3));
+    table_.back_is_lit.push_back(part.material->two_sided ? 1.0f : 0.0f);
+    table_.albedo.push_back(part.constant.albedo);
+    table_.emission.push_back(part.constant.emission);
+    part.positions = positions_.data() + positions_.size();
+    part.normals = normals_.data() + normals_.size();
+    part.triangles = triangles_.data() + triangles_.size();
+    add_vertices(instance, part, span);
     const bool mirrored = glm::determinant(glm::mat3(instance.world_from_object)) < 0.0f;
-    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-        glm::uvec3 corners = mesh.triangles[i];
+    for (glm::uvec3 corners : mesh.triangles) {
         if (mirrored) std::swap(corners.y, corners.z);
-        for (int corner = 0; corner < 3; ++corner) triangles[3 * i + corner] = corners[corner];
+        triangles_.insert(triangles_.end(), {corners.x, corners.y, corners.z});
     }
-    part.triangles = triangles;
+}
 
-    rtcSetGeometryUserData(geometry, &part);
+void TracedScene::attach(std::uint32_t index) {
+    const Part& part = parts_[index];
+    RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+    rtcSetGeometryTimeStepCount(geometry, static_cast<unsigned>(part.steps));
+    for (int step = 0; step < part.steps; ++step) {
+        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, static_cast<unsigned>(step), RTC_FORMAT_FLOAT3,
+                                   part.positions,
+                                   static_cast<std::size_t>(step) * part.vertex_count * sizeof(glm::vec3),
+                                   sizeof(glm::vec3), part.vertex_count);
+    }
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, part.triangles, 0,
+                               3 * sizeof(std::uint32_t), part.triangle_count);
+    check_embree(device_, scene_, fmt::format("taking instance '{}'", scene_.instances[index].name));
+    rtcSetGeometryUserData(geometry, &parts_[index]);
     if (part.material->alpha_mask) {
         rtcSetGeometryIntersectFilterFunction(geometry, &TracedScene::reject_holes);
         rtcSetGeometryOccludedFilterFunction(geometry, &TracedScene::reject_holes);

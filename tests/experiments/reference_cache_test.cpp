@@ -167,6 +167,8 @@ TEST(ReferenceKey, ChangesWithEverythingThatCanChangeAPixelAndWithNothingElse) {
     EXPECT_NE(changed([](auto& s) { s.quantities.ao_falloff = Falloff::cubic; }), key);
     EXPECT_NE(changed([](auto& s) { s.quantities.bounces = 2; }), key);
     EXPECT_NE(changed([](auto& s) { s.quantities.indirect_radius = 1.0f; }), key);
+    EXPECT_NE(changed([](auto& s) { s.quantities.reflection_radius = 1.0f; }), key);
+    EXPECT_NE(changed([](auto& s) { s.quantities.reflection_falloff = Falloff::cubic; }), key);
     EXPECT_NE(changed([](auto& s) { s.quantities.planes = {"ao"}; }), key);
     EXPECT_EQ(changed([](auto& s) {
                   s.quantities.planes = {"total", "ao"};

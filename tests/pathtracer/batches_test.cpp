@@ -69,7 +69,7 @@ void expect_single_rays_hits(const Scene& scene, const TimeSpan& span = {}) {
                 const SurfaceHit single = traced.intersect(origin, direction, rays.nearest[i], rays.farthest[i],
                                                            RayCoherence::incoherent, rays.time[i], oracle);
                 met += single.missed() ? 0 : 1;
-                different += same(single, hits[static_cast<std::size_t>(i)]) ? 0 : 1;
+                different += same(single, hits.get(i)) ? 0 : 1;
                 differently_blocked += (blocked[i] != 0) == !single.missed() ? 0 : 1;
             }
             if (oracle) continue;
@@ -77,14 +77,13 @@ void expect_single_rays_hits(const Scene& scene, const TimeSpan& span = {}) {
             Lanes<int> lanes;
             int count = 0;
             for (int i = rays.count - 1; i >= 0; --i) {
-                if (!hits[static_cast<std::size_t>(i)].missed()) lanes[count++] = i;
+                if (!hits.missed(i)) lanes[count++] = i;
             }
             SurfaceLanes points;
             traced.surface_points(rays, hits, lanes, count, points);
             for (int j = 0; j < count; ++j) {
                 const int i = lanes[j];
-                const SurfacePoint point =
-                    traced.surface_point(hits[static_cast<std::size_t>(i)], rays.direction.get(i), rays.time[i]);
+                const SurfacePoint point = traced.surface_point(hits.get(i), rays.direction.get(i), rays.time[i]);
                 const bool equal = points.ray_origin.get(j) == point.ray_origin &&
                                    points.geometric_normal.get(j) == point.geometric_normal &&
                                    points.shading_normal.get(j) == point.shading_normal &&
@@ -123,7 +122,7 @@ void expect_company_makes_no_difference(const Scene& scene) {
                 }
                 HitBatch found;
                 traced.intersect(batch, found);
-                hits.insert(hits.end(), found.begin(), found.begin() + batch.count);
+                for (int i = 0; i < batch.count; ++i) hits.push_back(found.get(i));
             }
             return hits;
         };

@@ -125,9 +125,8 @@ TEST(ChiSquare, DiscreteDistributionChoosesByWeight) {
     expect_density(
         "within", within_probabilities, Rejection::never,
         [&](glm::vec2 u) {
-            double within = 0.0;
-            const std::size_t item = two.sample(u.x, within);
-            return static_cast<int>(16 * item) + static_cast<int>(16.0 * within);
+            const std::size_t item = two.sample(u.x);
+            return static_cast<int>(16 * item) + static_cast<int>(16.0 * two.within(u.x, item));
         },
         Uses::first);
 }

@@ -108,21 +108,12 @@ TEST(LightChoice, PointsAreChosenByPowerAndUniformlyByArea) {
     for (double& probability : probabilities) probability /= 8.0 * lamps.power();
     // Half of what tilts the places on one lamp is averaged within its eight cells.
     constexpr double kept = 0.5;
-    const auto cell = [&](float pick, glm::vec2 u) {
-        return lamp_cell(lamps, lights.sample_extended(receiver, pick, u).direction);
+    const auto cell = [&](float x, float y) {
+        return lamp_cell(lamps, lights.sample_extended(receiver, x, y).direction);
     };
     expect_density(
-        "choice of the lamp, first number of the point", probabilities, Rejection::never,
-        [&](glm::vec2 u) {
-            return cell(u.x, {u.y, third_number(u)});
-        },
-        Uses::both, kept);
-    expect_density(
-        "second number of the point", probabilities, Rejection::never,
-        [&](glm::vec2 u) {
-            return cell(third_number(u), {u.y, u.x});
-        },
-        Uses::first, kept);
+        "choice of the lamp and first number of the point", probabilities, Rejection::never,
+        [&](glm::vec2 u) { return cell(u.x, u.y); }, Uses::both, kept);
 }
 
 TEST(LightChoice, SamplesCarryTheirDensity) {
@@ -133,7 +124,7 @@ TEST(LightChoice, SamplesCarryTheirDensity) {
     int at_edges = 0;
     for (int i = 0; i < 20000; ++i) {
         const glm::vec2 u = IndependentNumbers(5, i).u;
-        const LightSample sample = lights.sample_extended(receiver, third_number(u), u);
+        const LightSample sample = lights.sample_extended(receiver, u.x, u.y);
         const double expected = lamps.density(sample.direction);
         // Directions within rounding of an edge may be found on neither side of it, or on both.
         const double error = std::abs(sample.density - expected) / sample.density;
@@ -165,7 +156,7 @@ TEST(LightChoice, SharesWithAnEnvironmentImage) {
     expect_density(
         "lamps and sky", probabilities, Rejection::never,
         [&](glm::vec2 u) {
-            const LightSample sample = lights.sample_extended(receiver, u.x, {u.y, third_number(u)});
+            const LightSample sample = lights.sample_extended(receiver, u.x, u.y);
             if (sample.farthest != 1.0f) return 6;
             return lamp_cell(lamps, sample.direction) / 8;
         },

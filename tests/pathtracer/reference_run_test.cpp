@@ -211,6 +211,7 @@ TEST(Reference, RefusesSenselessSettings) {
     refuses([](auto& s) { s.minimum_separation = -1.0f; }, "separation");
     refuses([](auto& s) { s.quantities.ao_radius = 0.0f; }, "ao radius");
     refuses([](auto& s) { s.quantities.indirect_radius = std::nanf(""); }, "indirect radius");
+    refuses([](auto& s) { s.quantities.reflection_radius = 0.0f; }, "reflection radius");
     refuses([](auto& s) { s.quantities.bounces = -1; }, "bounces");
     refuses([](auto& s) { s.quantities.bounces = 1000; }, "bounces");
     refuses([](auto& s) { s.quantities.planes = {"colour"}; }, "no plane 'colour'");

@@ -36,7 +36,7 @@ TEST(Roulette, AgreesWithNoneForPathsThroughGlossAndPanes) {
     Material& walls = setting.scene.materials[0];
     walls.dielectric_reflectance = 0.2f, walls.roughness = 0.6f;
     setting.view = View(setting.view.camera(), 2, 2);
-    expect_agreement(Comparison{std::move(setting), roulette_after(1), roulette_after(0), {"indirect"}, 3, 8192, 10});
+    expect_agreement(Comparison{std::move(setting), roulette_after(1), roulette_after(0), {"indirect"}, 3, 32768, 10});
 }
 
 }  // namespace

@@ -59,7 +59,7 @@ TEST(SobolPoints, AreThoseOfPascalsTriangle) {
             }
             expected |= bit << (31 - j);
         }
-        ASSERT_EQ(second_sobol_dimension(reverse_bits(index)), expected) << index;
+        ASSERT_EQ(reverse_bits(reversed_second_sobol_dimension(index)), expected) << index;
     }
 }
 

@@ -130,9 +130,8 @@ TEST(DiscreteDistribution, ChoosesByWeightAndNeverAWeightlessItem) {
     EXPECT_EQ(distribution.sample(1.0), 3u);  // what rounds up to 1 is the last item with a weight
     EXPECT_DOUBLE_EQ(distribution.probability(1), 0.25);
     EXPECT_DOUBLE_EQ(distribution.probability(2), 0.0);
-    double within = -1.0;
-    EXPECT_EQ(distribution.sample(0.25 + 0.75 * 0.5, within), 3u);
-    EXPECT_DOUBLE_EQ(within, 0.5);
+    EXPECT_EQ(distribution.sample(0.25 + 0.75 * 0.5), 3u);
+    EXPECT_DOUBLE_EQ(distribution.within(0.25 + 0.75 * 0.5, 3), 0.5);
     EXPECT_TRUE(DiscreteDistribution(std::vector<double>{0.0, 0.0}).empty());
 }
 

@@ -98,12 +98,50 @@ TEST_P(BySampling, ASunOfAnyRadiusLightsATiltedSurfaceByTheCosine) {
             ASSERT_GT(cosine, std::sin(radius)) << "the disc must be above the horizon";
             const Frame frame = PathTracer(scene)
                                     .render(view_of(4.0f * normal, {0, 0, 0}, 0.1f, 8, {0, 0, 1}),
-                                            settings_by(GetParam(), {"direct"}, 1024, 0))
+                                            settings_by(GetParam(), {"direct"}, 2048, 0))
                                     .frame;
             // The disc's vector irradiance points along its axis, as long as all of it is above the horizon. The
             // tolerance is that of cap_height and sin in float for the smallest.
             expect_mean(frame, "direct", 0.5 / pi * 2.0 * cosine, "radius " + std::to_string(radius), 1e-5);
         }
+    }
+}
+
+// A mirror under a glowing ceiling: what it shows counts by how far away it lies, and the sky behind not at all.
+TEST_P(BySampling, WhatAMirrorShowsCountsByItsDistance) {
+    Scene scene = mirror_scene();
+    scene.environment.radiance = glm::vec3(7.0f);
+    add_quads(scene, add_material(scene, glm::vec3(0.0f), glm::vec3(2.0f)),
+              {{{-0.31f, 2, -30}, {1, 2, -30}, {1, 2, 30}, {-0.31f, 2, 30}}});
+    const View view = mirror_view();
+    const PathTracer tracer(scene);
+    for (const Falloff falloff : {Falloff::hard, Falloff::quadratic, Falloff::cubic}) {
+        auto settings = settings_by(GetParam(), {"reflection"}, 4, 1);
+        settings.quantities.reflection_radius = 2.8f;
+        settings.quantities.reflection_falloff = falloff;
+        const auto expected = [&](int x, int y) {
+            const PixelRay mirrored = PixelRay(view, x, y).mirrored(up, 0.0);
+            const glm::dvec3 seen = mirrored.on_plane(up, 2.0);
+            const double distance = 2.0 / mirrored.direction.y, ratio = distance / 2.8;
+            if (seen.x < -0.31 || seen.x > 1.0 || ratio >= 1.0) return glm::dvec3(0.0);
+            const double exponent = falloff == Falloff::hard ? 0.0 : falloff == Falloff::quadratic ? 1.0 : 3.0;
+            return fresnel_of_metal(copper, mirrored.direction.y) * 2.0 * std::pow(1.0 - ratio * ratio, exponent);
+        };
+        const Frame frame = tracer.render(view, settings).frame;
+        int lit = 0;
+        for (int y = 0; y < frame.height(); ++y) {
+            for (int x = 0; x < frame.width(); ++x) {
+                const glm::dvec3 wanted = expected(x, y);
+                lit += wanted.x > 0.0 ? 1 : 0;
+                for (int c = 0; c < 3; ++c) {
+                    // 2e-6: a few roundings of numbers up to 2, cubed; near the radius what is left is far smaller.
+                    EXPECT_NEAR(frame.plane("reflection").at(x, y, c), wanted[c], 2e-6)
+                        << to_string(falloff) << " at " << x << ", " << y;
+                }
+            }
+        }
+        EXPECT_GT(lit, 20) << to_string(falloff);
+        EXPECT_LT(lit, 200) << to_string(falloff);
     }
 }
 
@@ -251,6 +289,24 @@ TEST(GlossyScene, LooksTheSameHoweverItsLightIsFound) {
         for (const std::string& plane : comparison.planes) {
             expect_agreement(alone.at(plane), both.at(plane), name_of(strategy) + " against both, " + plane);
         }
+    }
+}
+
+// Light samples and followed rays count alike by their distance.
+TEST(GlossyScene, LooksTheSameWithinARadiusHoweverItsLightIsFound) {
+    const Comparison comparison{glossy_scene(), {}, {}, {"reflection"}, 0, 16384, 10};
+    const auto within = [](EmitterSampling strategy) {
+        return Way{name_of(strategy), [=](ReferenceSettings& settings) {
+                       settings.emitter_sampling = strategy;
+                       settings.quantities.reflection_radius = 5.0f;
+                       settings.quantities.reflection_falloff = Falloff::quadratic;
+                   }};
+    };
+    const auto both = replicates(comparison, within(EmitterSampling::both), 3000);
+    for (const EmitterSampling strategy : {EmitterSampling::lights, EmitterSampling::directions}) {
+        const auto alone = replicates(comparison, within(strategy), strategy == EmitterSampling::lights ? 1000 : 2000);
+        expect_agreement(alone.at("reflection"), both.at("reflection"),
+                         name_of(strategy) + " against both within a radius");
     }
 }
 
