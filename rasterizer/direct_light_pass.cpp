@@ -58,7 +58,9 @@ DirectLightPass::DirectLightPass(const PassResources& resources, int layer)
       albedo_(resources.planes.get("albedo")) {
     PlaneTextures& planes = resources.planes;
     // Whoever comes first, this pass for either layer or the truth's, allocates for both layers.
-    if (!planes.has("direct")) planes.create("direct", texture_format(resources.method.gbuffer.radiance_format), resources.layers_of("direct"));
+    if (!planes.has("direct"))
+        planes.create("direct", texture_format(resources.method.gbuffer.radiance_format),
+                      resources.layers_of("direct"));
     target_ = GlFramebuffer(context_, std::array{GlAttachment{&planes.get("direct"), layer}}, {}, "direct");
     shadow_points_ = find(planes, "shadow.points");
     shadow_paraboloids_ = find(planes, "shadow.paraboloids");

@@ -43,7 +43,8 @@ private:
 // Bytes of one texel of a sized internal format. Throws GlError for a format that no pass uses.
 std::size_t bytes_per_texel(GLenum format);
 
-// A texture of any target. Starts with nearest filtering (a cube with linear), clamped to its edge; contents are undefined until written.
+// A texture of any target. Starts with nearest filtering (a cube with linear), clamped to its edge; contents are
+// undefined until written.
 class GlTexture : public GlObject {
 public:
     GlTexture() = default;

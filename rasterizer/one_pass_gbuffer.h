@@ -13,8 +13,8 @@
 //   previous   layer 1 of the previous frame, at the same pixel. Guarantees nothing where anything moves.
 //   reproject  layer 1 of the previous frame, at the pixel where the fragment's point was then, against the depth that
 //              it had then: the separation is that of the previous frame, between points that were visible then. Wrong
-//              at what the first layer newly shows or hides, and, since the depth is that of the nearest pixel's centre,
-//              on surfaces so slanted that half a pixel changes their depth by the separation.
+//              at what the first layer newly shows or hides, and, since the depth is that of the nearest pixel's
+//              centre, on surfaces so slanted that half a pixel changes their depth by the separation.
 //
 // A fragment whose comparison is missing is dropped: it was outside the previous image, behind the previous camera, or
 // in front of nothing. All four find the layers of peeling where nothing moves. The comparison of the inexact ones may

@@ -48,15 +48,15 @@ struct PassResources {
     }
 };
 
-// What changes from frame to frame. The uniform block of view.glsl is bound and holds the views already, and the scene's
-// geometry stands as it does now. Views are with the guard band.
+// What changes from frame to frame. The uniform block of view.glsl is bound and holds the views already, and the
+// scene's geometry stands as it does now. Views are with the guard band.
 struct PassFrame {
     const View& view;
     const View& previous;
     const Frame* truth = nullptr;
     const View* next = nullptr;  // as known or, else, as foreseen; null: nobody looks ahead
-    // The frame that was rendered before this one is `previous`: what a pass kept of it can be found again. False on the
-    // first frame and on cuts.
+    // The frame that was rendered before this one is `previous`: what a pass kept of it can be found again. False on
+    // the first frame and on cuts.
     bool continues = false;
     // The frame before was told of this very one as its next.
     bool foretold = false;

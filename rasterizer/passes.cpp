@@ -32,14 +32,14 @@ void validate(const Method& method) {
     const GBufferSettings& gbuffer = method.gbuffer;
     require(gbuffer.layers >= 1 && gbuffer.layers <= most_layers, method,
             fmt::format("gbuffer.layers is {}; it can be 1 to {}", gbuffer.layers, most_layers));
-    require(gbuffer.generation == LayerGeneration::peel || gbuffer.source == SourceOfStage::truth || gbuffer.layers == 2,
-            method,
-            fmt::format("gbuffer.generation is \"{}\", which draws 2 layers, and gbuffer.layers is {}; set it to 2, or "
-                        "gbuffer.generation to \"peel\"",
-                        to_string(gbuffer.generation), gbuffer.layers));
     require(
-        gbuffer.minimum_separation >= 0.0f && std::isfinite(gbuffer.minimum_separation), method,
-        fmt::format("gbuffer.minimum_separation is {}; it must be zero or more", gbuffer.minimum_separation));
+        gbuffer.generation == LayerGeneration::peel || gbuffer.source == SourceOfStage::truth || gbuffer.layers == 2,
+        method,
+        fmt::format("gbuffer.generation is \"{}\", which draws 2 layers, and gbuffer.layers is {}; set it to 2, or "
+                    "gbuffer.generation to \"peel\"",
+                    to_string(gbuffer.generation), gbuffer.layers));
+    require(gbuffer.minimum_separation >= 0.0f && std::isfinite(gbuffer.minimum_separation), method,
+            fmt::format("gbuffer.minimum_separation is {}; it must be zero or more", gbuffer.minimum_separation));
     require(gbuffer.separation_unit == SeparationUnit::metres || gbuffer.minimum_separation < 1.0f, method,
             fmt::format("gbuffer.minimum_separation is {} of the frustum; it must be less than the whole of it (or set "
                         "gbuffer.separation_unit to \"metres\")",
@@ -48,9 +48,9 @@ void validate(const Method& method) {
             fmt::format("gbuffer.guard_band is {}; it must lie between 0 and 4096 pixels", gbuffer.guard_band));
     const bool any_truth = gbuffer.source == SourceOfStage::truth || method.direct.source == SourceOfStage::truth;
     const ShadowSettings& shadow = method.direct.shadow;
-    for (const auto& [name, value] : {std::pair{"cube_size", shadow.cube_size}, std::pair{"map_size", shadow.map_size},
-                                      std::pair{"emitter_size", shadow.emitter_size},
-                                      std::pair{"paraboloid_size", shadow.paraboloid_size}}) {
+    for (const auto& [name, value] :
+         {std::pair{"cube_size", shadow.cube_size}, std::pair{"map_size", shadow.map_size},
+          std::pair{"emitter_size", shadow.emitter_size}, std::pair{"paraboloid_size", shadow.paraboloid_size}}) {
         require(value >= 16 && value <= 16384, method,
                 fmt::format("direct.shadow.{} is {}; it must lie between 16 and 16384 texels", name, value));
     }
@@ -61,9 +61,10 @@ void validate(const Method& method) {
                         shadow.paraboloid_tessellation));
     require(shadow.pcf_radius >= 0 && shadow.pcf_radius <= 16, method,
             fmt::format("direct.shadow.pcf_radius is {}; it must lie between 0 and 16 texels", shadow.pcf_radius));
-    require(method.direct.volume_threshold > 0.0f && std::isfinite(method.direct.volume_threshold), method,
-            fmt::format("direct.volume_threshold is {}; it must be more than zero W/m^2, as light never falls to nothing",
-                        method.direct.volume_threshold));
+    require(
+        method.direct.volume_threshold > 0.0f && std::isfinite(method.direct.volume_threshold), method,
+        fmt::format("direct.volume_threshold is {}; it must be more than zero W/m^2, as light never falls to nothing",
+                    method.direct.volume_threshold));
     require(!(method.radiosity.enabled && method.radiosity.emitters_shine &&
               (method.direct.emitters || method.direct.source == SourceOfStage::truth)),
             method,

@@ -19,8 +19,8 @@
 //   hits only, as if the rest of the hemisphere looked like them.
 //
 // Light that reaches X from emissive surfaces in one segment is `direct`, so they do not shine through taps. With
-// `emitters_shine` they do, as in the sources: B is then direct + emission at Y. The emitters' light must be left out of
-// `direct` (direct.emitters = false), or it would be counted twice, and takes the place of one bounce: `irradiance`,
+// `emitters_shine` they do, as in the sources: B is then direct + emission at Y. The emitters' light must be left out
+// of `direct` (direct.emitters = false), or it would be counted twice, and takes the place of one bounce: `irradiance`,
 // `indirect.1` and `indirect` hold light of emitters after no bounce besides light of lamps, suns and the environment
 // after one. No plane then means what the truth's plane of its name means; what is to be compared is the sum direct +
 // indirect, with the truth's direct + (of lamps, suns and environment only) indirect.1, which is the truth's `direct`

@@ -1,8 +1,8 @@
 // Shader programs from embedded files.
 //
 // Shaders lie beside their pass (*.vert, *.tesc, *.tese, *.geom, *.frag, *.comp, shared parts *.glsl) and are compiled
-// into the library. The loader writes the `#version` line and the defines, and resolves `#include "file.glsl"` (each file
-// once per shader) with #line directives, so that a compile error names the very file and line.
+// into the library. The loader writes the `#version` line and the defines, and resolves `#include "file.glsl"` (each
+// file once per shader) with #line directives, so that a compile error names the very file and line.
 #pragma once
 
 #include <functional>

@@ -113,9 +113,8 @@ TEST(MethodFile, EveryParameterIsPrintedAndComesBack) {
 TEST(MethodFile, NoSettingIsMissingFromTheListOfParameters) {
     // Every setting takes 4 bytes (a truth value is padded to 4, as none follows another). Where this fails,
     // method_parameters() lacks a parameter that method.h has gained.
-    const std::size_t settings = sizeof(GBufferSettings) + sizeof(DirectSettings) +
-                                 sizeof(EnvironmentSettings) + sizeof(ProbeSettings) + sizeof(AmbientObscuranceSettings) +
-                                 sizeof(RadiositySettings);
+    const std::size_t settings = sizeof(GBufferSettings) + sizeof(DirectSettings) + sizeof(EnvironmentSettings) +
+                                 sizeof(ProbeSettings) + sizeof(AmbientObscuranceSettings) + sizeof(RadiositySettings);
     EXPECT_EQ(4 * method_parameter_names().size(), settings);
 }
 
