@@ -45,12 +45,12 @@ struct ShadowSettings {
     PointShadowMap point_map = PointShadowMap::cube;
     CubeGeneration cube_generation = CubeGeneration::six_views;
     CubeDistance cube_distance = CubeDistance::reciprocal;
-    int cube_size = 1024;             // texels per face, point lights
-    int paraboloid_size = 1024;       // texels per side of each of a light's two paraboloids
-    int paraboloid_tessellation = 8;  // most segments that an edge is cut into, 1..64; 1: none
-    int map_size = 2048;              // texels per side, spot and directional lights
-    int pcf_radius = 0;               // texels: (2 r + 1)^2 comparisons are averaged in flat maps; 0: one, bilinear
-    int emitter_size = 512;           // texels per face, emissive surfaces
+    int cube_size = 1024;              // texels per face, point lights
+    int paraboloid_size = 1024;        // texels per side of each of a light's two paraboloids
+    int paraboloid_tessellation = 64;  // most segments that an edge is cut into, 1..64; 1: none
+    int map_size = 2048;               // texels per side, spot and directional lights
+    int pcf_radius = 0;                // texels: (2 r + 1)^2 comparisons are averaged in flat maps; 0: one, bilinear
+    int emitter_size = 512;            // texels per face, emissive surfaces
     int emitter_samples = 1;  // points of an emissive surface whose visibility is averaged: 1 gives hard shadows
     float bias = 0.005f;      // metres that a receiver is lifted off its surface, besides what the texels call for
 };
