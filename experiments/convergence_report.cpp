@@ -9,8 +9,8 @@
 #include "embedded/page.h"
 #include "experiments/build_facts.h"
 #include "experiments/page.h"
-#include "experiments/program_json.h"
 #include "experiments/result_files.h"
+#include "experiments/run_json.h"
 #include "experiments/svg_chart.h"
 #include "experiments/terminal_table.h"
 #include "frames/atomic_file.h"
@@ -105,15 +105,7 @@ std::string print_convergence_csv(const ConvergenceResults& results) {
 
 std::string print_convergence_json(const ConvergenceResults& results) {
     const ConvergenceExperiment& experiment = results.experiment;
-    Json json;
-    json["program"] = program_json();
-    json["command"] = results.command;
-    json["started"] = results.started;
-    json["seconds"] = results.seconds;
-    json["machine"] = {{"cpu", results.system.cpu},
-                       {"worker_threads", results.system.worker_threads},
-                       {"operating_system", results.system.operating_system},
-                       {"embree", results.system.embree}};
+    Json json = run_json(results.command, results.started, results.seconds, results.system);
     json["experiment"] = {{"title", experiment.title},
                           {"question", experiment.question},
                           {"planes", experiment.planes},

@@ -2,8 +2,8 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/generation.h"
-#include "experiments/program_json.h"
 #include "experiments/result_files.h"
+#include "experiments/run_json.h"
 #include "experiments/terminal_table.h"
 #include "frames/atomic_file.h"
 
@@ -27,15 +27,7 @@ std::string print_csv(const GenerationResults& results) {
 
 std::string print_json(const GenerationResults& results) {
     const GenerationExperiment& experiment = results.experiment;
-    Json json;
-    json["program"] = program_json();
-    json["command"] = results.command;
-    json["started"] = results.started;
-    json["seconds"] = results.seconds;
-    json["machine"] = {{"cpu", results.system.cpu},
-                       {"worker_threads", results.system.worker_threads},
-                       {"operating_system", results.system.operating_system},
-                       {"embree", results.system.embree}};
+    Json json = run_json(results.command, results.started, results.seconds, results.system);
     json["gl"] = {{"renderer", results.gl_renderer}};
     json["experiment"] = {{"title", experiment.title},
                           {"question", experiment.question},

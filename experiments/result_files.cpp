@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/page.h"
-#include "experiments/program_json.h"
+#include "experiments/run_json.h"
 #include "frames/atomic_file.h"
 #include "metrics/comparison.h"
 
@@ -122,18 +122,8 @@ std::string print_csv(const RunResults& results) {
 }
 
 std::string print_json(const RunResults& results) {
-    Json json;
-    json["program"] = program_json();
-    json["command"] = results.command;
-    json["started"] = results.started;
-    json["seconds"] = results.seconds;
+    Json json = run_json(results.command, results.started, results.seconds, results.system);
     json["interrupted"] = results.interrupted;
-    json["machine"] = {{"cpu", results.system.cpu},
-                       {"logical_cores", results.system.logical_cores},
-                       {"worker_threads", results.system.worker_threads},
-                       {"memory_bytes", results.system.memory_bytes},
-                       {"operating_system", results.system.operating_system},
-                       {"embree", results.system.embree}};
     json["gl"] = {{"backend", results.gl_backend},
                   {"vendor", results.gl_vendor},
                   {"renderer", results.gl_renderer},

@@ -1,0 +1,17 @@
+// What made a result, when and on what, as result files tell it.
+#pragma once
+
+#include <string>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "experiments/system_facts.h"
+
+namespace plumb {
+
+// program (build_facts() under their names: version, git, compiler, build_type, integrator_hash), command, started,
+// seconds, and machine.
+nlohmann::ordered_json run_json(const std::string& command, const std::string& started, double seconds,
+                                const SystemFacts& system);
+
+}  // namespace plumb
