@@ -15,6 +15,13 @@ constexpr int most_lanes = 64;
 
 // For functions that loops over lanes call: a call that stays a call is not computed several at once.
 #define PLUMBLINE_INLINE inline __attribute__((always_inline))
+// Before a loop whose lanes do not depend on each other, where the compiler cannot know: it looks up what may be
+// anywhere.
+#ifdef __clang__
+#define PLUMBLINE_INDEPENDENT_LANES _Pragma("clang loop vectorize(assume_safety)")
+#else
+#define PLUMBLINE_INDEPENDENT_LANES _Pragma("GCC ivdep")
+#endif
 
 template <typename T>
 struct alignas(64) Lanes : std::array<T, most_lanes> {};

@@ -252,7 +252,7 @@ void TracedScene::gather_corners(const HitBatch& hits, const Lanes<int>& lanes, 
     const int *first_triangle = table_.first_triangle.data(), *first_vertex = table_.first_vertex.data();
     const std::uint32_t* triangles = triangles_.data();
     const float *positions = &positions_.data()->x, *normals = &normals_.data()->x;
-#pragma GCC ivdep
+    PLUMBLINE_INDEPENDENT_LANES
     for (int i = 0; i < count; ++i) {
         const auto instance = static_cast<int>(hits.instance[lanes[i]]);
         const int triangle = 3 * (first_triangle[instance] + static_cast<int>(hits.triangle[lanes[i]]));
@@ -286,7 +286,7 @@ void TracedScene::surface_points(const RayBatch& rays, const HitBatch& hits, con
     Lanes<float> lit;
     const float *back_is_lit = table_.back_is_lit.data(), *albedos = &table_.albedo.data()->x,
                 *emissions = &table_.emission.data()->x;
-#pragma GCC ivdep
+    PLUMBLINE_INDEPENDENT_LANES
     for (int i = 0; i < count; ++i) {
         const int lane = lanes[i];
         const PointGeometry point =
@@ -299,8 +299,8 @@ void TracedScene::surface_points(const RayBatch& rays, const HitBatch& hits, con
         const auto instance = static_cast<int>(hits.instance[lane]);
         const float lit_from_behind = back_is_lit[instance];
         lit[i] = point.side > 0.0f ? 1.0f : lit_from_behind;
-        const auto at = [instance](const float* from) {
-            return glm::vec3(from[3 * instance], from[3 * instance + 1], from[3 * instance + 2]);
+        const auto at = [first = 3 * instance](const float* from) {
+            return glm::vec3(from[first], from[first + 1], from[first + 2]);
         };
         points.albedo.set(i, lit[i] * at(albedos));
         points.emission.set(i, lit[i] * at(emissions));

@@ -14,14 +14,14 @@ std::vector<Comparison> comparisons() {
     const std::vector<std::string> indirect = {"indirect"}, all = {"indirect", "reflection", "total"};
     return {
         {room(), lights, both, indirect, 3, 16384},
-        {room(), directions, both, indirect, 3, 16384},
+        {room(), directions, both, indirect, 3, 49152},
         {open_air(), lights, both, indirect, 1, 65536},
         {open_air(), directions, both, indirect, 1, 32768},
         {open_air(), half_a, half_b, indirect, 1, 32768},
         {glossy_room(), lights, both, all, 2, 16384},
         {glossy_room(), directions, both, all, 2, 32768},
         {room_with_a_pane(), lights, both, indirect, 2, 16384},
-        {room_with_a_pane(), directions, both, indirect, 2, 16384},
+        {room_with_a_pane(), directions, both, indirect, 2, 49152},
         {glossy_room(), roulette_after(0), roulette_after(1), all, 4, 16384},
     };
 }
