@@ -260,8 +260,7 @@ void PathIntegrator::arrive(const VertexBatch& from, int vertex, Start start, bo
     const RayBatch& rays = scattered.rays;
     const HitBatch& hits = workspace.hits;
     const bool goes_on = vertex < plan_.bounces && (start == Start::specular || plan_.indirect);
-    // What a diffuse lobe gets straight from an emitter is direct light, which knows no radius.
-    const bool limited = is_limited(start, vertex), emission_is_limited = limited && start == Start::specular;
+    const bool limited = is_limited(start, vertex);
     Lanes<int>& met = workspace.met;
     int met_count = 0;
     for (int i = 0; i < rays.count; ++i) {
@@ -275,15 +274,15 @@ void PathIntegrator::arrive(const VertexBatch& from, int vertex, Start start, bo
         glm::vec3 throughput = from.throughput.get(lane) * scattered.weight.get(i);
         const glm::vec3 emission = points.emission.get(j), direction = rays.direction.get(i);
         const float counts = limited ? counted(start, hits.distance[i]) : 1.0f;
-        if (emission_is_limited) throughput *= counts;
         if (looks_for_emitters && emission != glm::vec3(0.0f)) {
             const float weight = lights_.emission_weight(hits.get(i), points.geometric_normal.get(j), direction,
                                                          scattered.density[i], rays.time[i]);
-            add_to(sum, from.path[lane], throughput * emission * weight);
+            // What a diffuse lobe gets straight from an emitter is direct light, which knows no radius.
+            const float reached = start == Start::specular ? counts : 1.0f;
+            add_to(sum, from.path[lane], throughput * emission * (weight * reached));
         }
-        if (!goes_on) continue;
-        if (!(counts > 0.0f)) continue;
-        if (limited && !emission_is_limited) throughput *= counts;
+        if (!goes_on || !(counts > 0.0f)) continue;
+        throughput *= counts;
         const bool plain = scene_.is_plain(hits.instance[i]);
         glm::vec3 albedo = points.albedo.get(j);
         if (plain && albedo == glm::vec3(0.0f)) continue;

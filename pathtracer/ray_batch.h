@@ -43,7 +43,7 @@ struct HitBatch {
 
 // The geometry of the points that rays met, and their diffuse and emitted light.
 struct SurfaceLanes {
-    VectorLanes position, ray_origin, geometric_normal, shading_normal, albedo, emission;
+    VectorLanes ray_origin, geometric_normal, shading_normal, albedo, emission;
 };
 
 }  // namespace plumb

@@ -292,7 +292,6 @@ void TracedScene::surface_points(const RayBatch& rays, const HitBatch& hits, con
         const PointGeometry point =
             point_geometry({corners.a.get(i), corners.b.get(i), corners.c.get(i), {}, {}, {}}, hits.u[lane],
                            hits.v[lane], corners.normal_sum.get(i), rays.direction.get(lane));
-        points.position.set(i, point.position);
         points.ray_origin.set(i, point.ray_origin);
         points.geometric_normal.set(i, point.geometric_normal);
         points.shading_normal.set(i, point.shading_normal);
