@@ -1,35 +1,15 @@
-// Methods as text: every parameter has a name ("ao.samples"), a range and a place in a TOML file, so that it can be
-// set, printed, hashed, swept and told apart.
+// Methods as text: read from TOML files, set from command lines, printed, hashed and told apart.
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <string_view>
-#include <variant>
 #include <vector>
 
 #include "experiments/config.h"
-#include "rasterizer/method.h"
+#include "experiments/method_parameters.h"
 
 namespace plumb {
-
-// An enumeration by the names of its values, in their order.
-struct MethodChoice {
-    std::vector<std::string> names;
-    std::function<int()> get;
-    std::function<void(int)> set;
-};
-
-struct MethodParameter {
-    std::string name;  // dotted, as in the TOML file
-    std::variant<bool*, int*, float*, MethodChoice> value;
-    double least = 0.0, most = 0.0;  // of whole and other numbers
-};
-
-// The parameters of `method`, pointing into it: the one list that everything below goes through.
-std::vector<MethodParameter> method_parameters(Method& method);
-std::vector<std::string> method_parameter_names();
 
 // Methods that others can be based on, in the order of their definition.
 using MethodList = std::vector<Method>;
@@ -50,12 +30,8 @@ void set_method_parameter(Method& method, const std::string& assignment);
 // methods of many kinds). Throws ConfigError for unknown names and values out of range.
 void override_method(Method& method, const ConfigValue& table, const std::string& source);
 
-// Why parameter `name` changes nothing in `method`; empty where it matters.
-std::string reason_without_effect(const Method& method, std::string_view name);
-
 // The whole method as TOML, one "name = value" a line, in the order of method_parameters; parse_method takes it back.
 std::string print_method(const Method& method);
-std::string print_parameter(const MethodParameter& parameter);
 // Over all parameters that have an effect; not over the name.
 std::uint64_t method_hash(const Method& method);
 

@@ -1,0 +1,195 @@
+#include "experiments/method_parameters.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include <fmt/format.h>
+
+namespace plumb {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+template <class Enumeration>
+MethodChoice choice(Enumeration& value, std::vector<std::string> names) {
+    return {std::move(names), [&value] { return static_cast<int>(value); },
+            [&value](int index) { value = static_cast<Enumeration>(index); }};
+}
+
+void add_blur(std::vector<MethodParameter>& parameters, const std::string& prefix, BilateralBlurSettings& blur) {
+    parameters.insert(parameters.end(), {
+                                            {prefix + "radius", &blur.radius, 0, 64},
+                                            {prefix + "step", &blur.step, 1, 64},
+                                            {prefix + "depth_sharpness", &blur.depth_sharpness, 0, 1e6},
+                                            {prefix + "normal_sharpness", &blur.normal_sharpness, 0, 1e6},
+                                            {prefix + "plane_sharpness", &blur.plane_sharpness, 0, 1e6},
+                                            {prefix + "monotonic", &blur.monotonic},
+                                            {prefix + "depth_key_bits", &blur.depth_key_bits, 8, 32},
+                                        });
+}
+
+// Why parameter `name` of the shadow maps changes nothing; empty where it matters.
+std::string shadow_reason(const ShadowSettings& shadow, std::string_view name) {
+    const bool paraboloids = shadow.point_map == PointShadowMap::dual_paraboloid;
+    if (name == "direct.shadow.point_map" || name == "direct.shadow.cube_size" ||
+        name.starts_with("direct.shadow.paraboloid_")) {
+        if (!shadow.lamps) return "direct.shadow.lamps = false";
+    }
+    if (name == "direct.shadow.cube_size" && paraboloids) return "direct.shadow.point_map = \"dual_paraboloid\"";
+    if (name.starts_with("direct.shadow.paraboloid_") && !paraboloids) return "direct.shadow.point_map = \"cube\"";
+    return "";
+}
+
+// The same of the G-buffer.
+std::string gbuffer_reason(const Method& method, std::string_view name) {
+    constexpr std::array of_two_layers = {"gbuffer.minimum_separation", "gbuffer.separation_unit", "gbuffer.generation",
+                                          "gbuffer.layer_selection"};
+    constexpr std::array of_rendering = {"gbuffer.separation_unit", "gbuffer.generation",    "gbuffer.layer_selection",
+                                         "gbuffer.depth_mapping",   "gbuffer.normal_format", "gbuffer.position"};
+    const GBufferSettings& gbuffer = method.gbuffer;
+    if (gbuffer.layers == 1 && std::ranges::find(of_two_layers, name) != of_two_layers.end())
+        return "gbuffer.layers = 1";
+    if (gbuffer.source == SourceOfStage::truth && std::ranges::find(of_rendering, name) != of_rendering.end())
+        return "gbuffer.source = \"truth\"";
+    if (name == "gbuffer.layer_selection" && gbuffer.generation == LayerGeneration::peel)
+        return "gbuffer.generation = \"peel\"";
+    if (name == "gbuffer.position" && !method.ao.enabled && !method.radiosity.enabled)
+        return "ao.enabled = false and radiosity.enabled = false";
+    return "";
+}
+
+// The same of the lights, the environment's cubes and the probe.
+std::string light_reason(const DirectSettings& direct, std::string_view name) {
+    if (name.starts_with("direct.volume_") && direct.local_lights == LocalLights::fullscreen) {
+        return "direct.local_lights = \"fullscreen\"";
+    }
+    if (name == "direct.volume_faces" && direct.local_lights == LocalLights::volume_stencil) {
+        return "direct.local_lights = \"volume_stencil\", which draws both faces";
+    }
+    if (name.starts_with("direct.shadow.emitter_") && !direct.emitters) return "direct.emitters = false";
+    const bool cube = direct.source == SourceOfStage::method && direct.environment == EnvironmentIrradiance::cube;
+    if (name == "environment.size" && !cube) return "no stage reads the environment's cubes (direct.environment would)";
+    if (name == "environment.samples") return "no stage reads glossy levels";
+    if (name.starts_with("probe.")) return "no stage reads the probe";
+    return "";
+}
+
+}  // namespace
+
+std::vector<MethodParameter> method_parameters(Method& m) {
+    const std::vector<std::string> sources = {"method", "truth"};
+    std::vector<MethodParameter> parameters = {
+        {"gbuffer.source", choice(m.gbuffer.source, sources)},
+        {"gbuffer.layers", &m.gbuffer.layers, 1, 4},
+        {"gbuffer.generation", choice(m.gbuffer.generation, {"peel", "delay", "previous", "predict", "reproject"})},
+        {"gbuffer.layer_selection", choice(m.gbuffer.layer_selection, {"geometry_shader", "vertex_shader"})},
+        {"gbuffer.minimum_separation", &m.gbuffer.minimum_separation, 0, 1e6},
+        {"gbuffer.separation_unit", choice(m.gbuffer.separation_unit, {"metres", "frustum"})},
+        {"gbuffer.guard_band", &m.gbuffer.guard_band, 0, 4096},
+        {"gbuffer.depth_mapping", choice(m.gbuffer.depth_mapping, {"reversed", "standard"})},
+        {"gbuffer.position", choice(m.gbuffer.position, {"from_depth", "stored"})},
+        {"gbuffer.normal_format",
+         choice(m.gbuffer.normal_format, {"oct32", "oct16", "rgb32f", "rgb16f", "rgb10a2", "r11g11b10f", "xy8"})},
+        {"gbuffer.radiance_format", choice(m.gbuffer.radiance_format, {"rgba32f", "rgba16f", "r11g11b10f"})},
+        {"direct.source", choice(m.direct.source, sources)},
+        {"direct.emitters", &m.direct.emitters},
+        {"direct.local_lights", choice(m.direct.local_lights, {"fullscreen", "volume", "volume_stencil"})},
+        {"direct.volume_threshold", &m.direct.volume_threshold, 1e-9, 1e6},
+        {"direct.volume_faces", choice(m.direct.volume_faces, {"front", "back"})},
+        {"direct.environment", choice(m.direct.environment, {"harmonics", "cube"})},
+        {"direct.shadow.lamps", &m.direct.shadow.lamps},
+        {"direct.shadow.point_map", choice(m.direct.shadow.point_map, {"cube", "dual_paraboloid"})},
+        {"direct.shadow.cube_generation", choice(m.direct.shadow.cube_generation, {"six_views", "one_pass"})},
+        {"direct.shadow.cube_distance", choice(m.direct.shadow.cube_distance, {"reciprocal", "linear"})},
+        {"direct.shadow.cube_size", &m.direct.shadow.cube_size, 16, 8192},
+        {"direct.shadow.paraboloid_size", &m.direct.shadow.paraboloid_size, 16, 16384},
+        {"direct.shadow.paraboloid_tessellation", &m.direct.shadow.paraboloid_tessellation, 1, 64},
+        {"direct.shadow.map_size", &m.direct.shadow.map_size, 16, 16384},
+        {"direct.shadow.pcf_radius", &m.direct.shadow.pcf_radius, 0, 16},
+        {"direct.shadow.emitter_size", &m.direct.shadow.emitter_size, 16, 8192},
+        {"direct.shadow.emitter_samples", &m.direct.shadow.emitter_samples, 1, 64},
+        {"direct.shadow.bias", &m.direct.shadow.bias, 0, 1e3},
+        {"environment.size", &m.environment.size, 32, 4096},
+        {"environment.samples", &m.environment.samples, 1, 65536},
+        {"probe.x", &m.probe.x, -1e6, 1e6},
+        {"probe.y", &m.probe.y, -1e6, 1e6},
+        {"probe.z", &m.probe.z, -1e6, 1e6},
+        {"probe.size", &m.probe.size, 32, 4096},
+        {"probe.every_frame", &m.probe.every_frame},
+        {"ao.enabled", &m.ao.enabled},
+        {"ao.estimator", choice(m.ao.estimator, {"mara2016", "g3d_demo", "sao2012", "linear"})},
+        {"ao.samples", &m.ao.samples, 1, 1000},
+        {"ao.layers", &m.ao.layers, 1, 2},
+        {"ao.bias", &m.ao.bias, 0, 1e3},
+        {"ao.epsilon", &m.ao.epsilon, 0, 1e3},
+        {"ao.intensity", &m.ao.intensity, 0, 100},
+        {"ao.use_mip_chain", &m.ao.use_mip_chain},
+        {"ao.mip_offset", &m.ao.mip_offset, 0, 16},
+    };
+    add_blur(parameters, "ao.blur.", m.ao.blur);
+    parameters.insert(parameters.end(),
+                      {
+                          {"radiosity.enabled", &m.radiosity.enabled},
+                          {"radiosity.samples", &m.radiosity.samples, 1, 1000},
+                          {"radiosity.layers", &m.radiosity.layers, 1, 2},
+                          {"radiosity.emitters_shine", &m.radiosity.emitters_shine},
+                          {"radiosity.radius", &m.radiosity.radius, 1e-6, infinity},
+                          {"radiosity.test_tap_normal", &m.radiosity.test_tap_normal},
+                          {"radiosity.normalisation", choice(m.radiosity.normalisation, {"hits", "samples"})},
+                          {"radiosity.use_mip_chain", &m.radiosity.use_mip_chain},
+                          {"radiosity.mip_offset", &m.radiosity.mip_offset, 0, 16},
+                          {"radiosity.minimum_mip_level", &m.radiosity.minimum_mip_level, 0, 5},
+                      });
+    add_blur(parameters, "radiosity.blur.", m.radiosity.blur);
+    return parameters;
+}
+
+std::vector<std::string> method_parameter_names() {
+    Method method;
+    std::vector<std::string> names;
+    for (const MethodParameter& parameter : method_parameters(method)) names.push_back(parameter.name);
+    return names;
+}
+
+std::string reason_without_effect(const Method& method, std::string_view name) {
+    if (name.starts_with("ao.") && name != "ao.enabled" && !method.ao.enabled) return "ao.enabled = false";
+    if (name.starts_with("radiosity.") && name != "radiosity.enabled" && !method.radiosity.enabled) {
+        return "radiosity.enabled = false";
+    }
+    if (name.starts_with("direct.") && name != "direct.source" && method.direct.source == SourceOfStage::truth) {
+        return "direct.source = \"truth\"";
+    }
+    if (std::string reason = shadow_reason(method.direct.shadow, name); !reason.empty()) return reason;
+    if (std::string reason = light_reason(method.direct, name); !reason.empty()) return reason;
+    const auto blur_reason = [&](std::string_view group, const BilateralBlurSettings& blur) {
+        const bool off = name.starts_with(group) && name != fmt::format("{}radius", group) && blur.radius == 0;
+        if (off) return fmt::format("{}radius = 0", group);
+        const bool no_keys = name == fmt::format("{}depth_key_bits", group) && blur.depth_sharpness == 0.0f;
+        return no_keys ? fmt::format("{}depth_sharpness = 0", group) : std::string();
+    };
+    if (std::string reason = blur_reason("ao.blur.", method.ao.blur); !reason.empty()) return reason;
+    if (std::string reason = blur_reason("radiosity.blur.", method.radiosity.blur); !reason.empty()) return reason;
+    if (!method.ao.use_mip_chain && name == "ao.mip_offset") return "ao.use_mip_chain = false";
+    if (!method.radiosity.use_mip_chain && (name == "radiosity.mip_offset" || name == "radiosity.minimum_mip_level")) {
+        return "radiosity.use_mip_chain = false";
+    }
+    return gbuffer_reason(method, name);
+}
+
+std::string print_parameter(const MethodParameter& parameter) {
+    struct Printer {
+        std::string operator()(const bool* value) const { return *value ? "true" : "false"; }
+        std::string operator()(const int* value) const { return fmt::format("{}", *value); }
+        std::string operator()(const float* value) const {
+            const std::string text = fmt::format("{}", *value);  // the shortest text that reads back as the same float
+            return text.find_first_of(".einf") == std::string::npos ? text + ".0" : text;
+        }
+        std::string operator()(const MethodChoice& value) const {
+            return fmt::format("\"{}\"", value.names[value.get()]);
+        }
+    };
+    return std::visit(Printer{}, parameter.value);
+}
+
+}  // namespace plumb
