@@ -73,9 +73,11 @@ std::string view_key(const View& view) {
         for (int row = 0; row < 4; ++row) text += fmt::format(" {:a}", camera.world_from_camera[column][row]);
     }
     // The width that is seen tells views with a guard band apart.
-    return text + fmt::format(" sees {:a} {:a} near {:a} far {:a} aperture {:a} focus {:a} size {}x{}",
-                              view.tan_half().x, view.tan_half().y, camera.near_plane, camera.far_plane,
-                              camera.aperture_radius, camera.focus_distance, view.width(), view.height());
+    text += fmt::format(" sees {:a} {:a} near {:a} far {:a} aperture {:a} focus {:a} size {}x{}", view.tan_half().x,
+                        view.tan_half().y, camera.near_plane, camera.far_plane, camera.aperture_radius,
+                        camera.focus_distance, view.width(), view.height());
+    if (view.offset() != glm::vec2(0.0f)) text += fmt::format(" offset {:a} {:a}", view.offset().x, view.offset().y);
+    return text;
 }
 
 std::string view_key(const std::optional<View>& view) { return view ? view_key(*view) : "none"; }

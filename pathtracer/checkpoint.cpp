@@ -56,6 +56,7 @@ void append_view(std::string& bytes, const View& view) {
     append(bytes, view.camera().aperture_radius), append(bytes, view.camera().focus_distance);
     append(bytes, view.camera().near_plane), append(bytes, view.camera().far_plane);
     append(bytes, view.width()), append(bytes, view.height());
+    if (view.offset() != glm::vec2(0.0f)) append(bytes, view.offset().x), append(bytes, view.offset().y);
 }
 
 std::uint64_t hash(const std::string& bytes) { return XXH3_64bits(bytes.data(), bytes.size()); }

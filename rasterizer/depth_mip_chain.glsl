@@ -6,6 +6,7 @@ const int maximum_mip_level = 5;
 
 ivec2 image_size = ivec2(view_size);
 vec2 ray_scale = 2.0 * tan_half / view_size;
+vec2 ray_corner = tan_half * (1.0 - view_shift);  // minus the ray through pixel coordinates (0, 0)
 
 // The pixel of level 0 whose depth a texel of `level` holds.
 ivec2 pixel_of_texel(ivec2 texel, int level) {
@@ -26,7 +27,7 @@ bool is_inside(ivec2 pixel) { return all(greaterThanEqual(pixel, ivec2(0))) && a
 
 // camera_space_point of the pixel's centre, without its division.
 vec3 camera_space_point_at(ivec2 pixel, float depth) {
-    return depth * vec3((vec2(pixel) + 0.5) * ray_scale - tan_half, -1.0);
+    return depth * vec3((vec2(pixel) + 0.5) * ray_scale - ray_corner, -1.0);
 }
 
 // The point of a layer that the pixel of level 0 shows at `depth`, as the method wants it: read (STORED_POSITION, which

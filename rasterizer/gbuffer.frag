@@ -47,7 +47,7 @@ bool lay_behind() {
 #endif
     vec3 previous = (previous_camera_from_camera * vec4(point, 1.0)).xyz;
     float previous_depth = -previous.z;
-    vec2 pixel = 0.5 * view_size * (previous.xy / (previous_depth * previous_tan_half) + 1.0);
+    vec2 pixel = previous_pixel_of(previous);
     bool seen = previous_depth > 0.0 && all(greaterThanEqual(pixel, vec2(0.0))) && all(lessThan(pixel, view_size));
     return seen && lies_behind(previous_depth, ivec2(pixel));
 }

@@ -28,6 +28,7 @@ const GlTexture& GBufferPass::depth_buffer(const PassResources& resources, int l
     for (const std::string& plane : gbuffer_outputs(resources.method, 0))
         layers = std::max(layers, resources.layers_of(plane));
     create_gbuffer_planes(resources, layers, 1);
+    if (any_layer_is_read(resources, gbuffer_history)) planes.create_history("depth", std::string(gbuffer_history));
     return planes.adopt(std::string(gbuffer_depth_buffer),
                         GlTexture::flat(resources.context, GL_DEPTH_COMPONENT32F, planes.width(), planes.height()));
 }
@@ -39,15 +40,19 @@ GBufferPass::GBufferPass(const PassResources& resources, int layer)
       test_(settings_.depth_mapping),
       depth_buffer_(depth_buffer(resources, layer)),
       depth_(resources.planes.get("depth")),
+      history_(resources.planes.history_of("depth")),
       targets_(gbuffer_targets(resources, depth_, layer)),
       draw_(resources, {"gbuffer.vert", "gbuffer.frag"}, peeling_defines(targets_, layer)),
-      target_(context_, targets_.colours, GlAttachment{&depth_buffer_}, pass_name(layer).c_str()) {
+      target_(depth_, history_, [this] {
+          return GlFramebuffer(context_, targets_.colours, GlAttachment{&depth_buffer_}, pass_name(layer_).c_str());
+      }) {
     if (layer == 0) background_.emplace(resources, depth_buffer_);
 }
 
 void GBufferPass::execute(const PassFrame& frame) {
     const GladGLContext& gl = context_.gl;
-    clear_gbuffer(target_, static_cast<GLint>(targets_.colours.size()), test_);
+    if (history_ && layer_ == 0) history_->trade_places();
+    clear_gbuffer(target_.now(), static_cast<GLint>(targets_.colours.size()), test_);
     gl.Enable(GL_DEPTH_TEST);
     gl.DepthFunc(test_.nearer);
     if (layer_ > 0) {

@@ -6,7 +6,8 @@
 //   Source: depth peeling, Everitt 2001; minimum separation, Mara et al. 2016, "Deep G-Buffers for Stable Global
 //   Illumination Approximation"; as a fraction of the frustum, Nielsen 2015.
 //
-// gbuffer_planes.h says what the planes hold. The hardware's depth buffer is shared by the layers.
+// gbuffer_planes.h says what the planes hold. The hardware's depth buffer is shared by the layers. Where somebody reads
+// the depth of the frame before, the first layer's pass lets it trade places with this frame's.
 #pragma once
 
 #include "rasterizer/gbuffer_draw.h"
@@ -29,9 +30,10 @@ private:
     DepthTest test_;
     const GlTexture& depth_buffer_;
     const GlTexture& depth_;
+    const PlaneHistory* history_;  // null where nobody reads the depth of the frame before
     GBufferTargets targets_;
     GBufferDraw draw_;
-    GlFramebuffer target_;
+    PlaneTarget target_;
     std::optional<BackgroundDraw> background_;
 };
 

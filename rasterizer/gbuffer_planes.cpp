@@ -38,6 +38,7 @@ std::vector<std::string> gbuffer_outputs(const Method& method, int layer) {
     for (const GBufferPlane& plane : gbuffer_planes) {
         if (exists(plane.name, method)) names.push_back(layer_prefix(layer) + std::string(plane.name));
     }
+    names.push_back(layer_prefix(layer) + std::string(gbuffer_history));
     return names;
 }
 

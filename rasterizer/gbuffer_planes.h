@@ -10,6 +10,7 @@
 //   it
 //                               is, camera space of now, metres
 //   camera_position  RGBA32F    camera space; only where the method stores positions (gbuffer.position)
+//   previous_depth   R32F       what `depth` held in the frame before: the two trade places (plane_history.h)
 //
 // The hardware's depth buffer, which is no plane, is 32-bit float.
 #pragma once
@@ -56,6 +57,6 @@ GLenum texture_format(RadianceFormat format);
 // keeps for the next frame.
 bool belongs_to_gbuffer(std::string_view texture);
 constexpr std::string_view gbuffer_depth_buffer = "gbuffer.depth_buffer";
-constexpr std::string_view gbuffer_history = "gbuffer.history";
+constexpr std::string_view gbuffer_history = "previous_depth";
 
 }  // namespace plumb

@@ -13,6 +13,6 @@ invariant gl_Position;
 void main() {
     vec3 p = (camera_from_world * (world_from_unit * vec4(position, 1.0))).xyz;
     // Depth is near / distance as in light_volume_depth.frag: reversed, without a far plane.
-    gl_Position = vec4(p.xy / tan_half, near_plane, -p.z);
+    gl_Position = vec4(p.xy / tan_half + p.z * view_shift, near_plane, -p.z);
     light = instance_light;
 }

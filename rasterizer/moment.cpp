@@ -7,7 +7,7 @@ bool same(const View& a, const View& b) {
     const Camera &first = a.camera(), &second = b.camera();
     return a.width() == b.width() && a.height() == b.height() && first.world_from_camera == second.world_from_camera &&
            first.vertical_fov == second.vertical_fov && first.near_plane == second.near_plane &&
-           first.far_plane == second.far_plane;
+           first.far_plane == second.far_plane && a.offset() == b.offset();
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include "rasterizer/fullscreen.h"
 #include "rasterizer/pass.h"
+#include "rasterizer/reprojection.h"
 
 namespace plumb {
 
@@ -14,7 +15,7 @@ public:
 
 private:
     const GlTexture& depth_;
-    const GlTexture* displacement_ = nullptr;  // of scenes in which something moves
+    Reprojection reprojection_;
     int layer_;
     FullscreenDraw draw_;
     GlFramebuffer target_;

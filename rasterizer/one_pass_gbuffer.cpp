@@ -1,7 +1,5 @@
 #include "rasterizer/one_pass_gbuffer.h"
 
-#include <utility>
-
 #include <fmt/format.h>
 
 #include "rasterizer/gl_error.h"
@@ -28,7 +26,7 @@ OnePassGBuffer::OnePassGBuffer(const PassResources& resources)
       settings_(resources.method.gbuffer),
       test_(settings_.depth_mapping),
       depth_(create_planes(resources)),
-      history_(resources.planes.create(std::string(gbuffer_history), GL_R32F, layer_count())),
+      history_(resources.planes.create_history("depth", std::string(gbuffer_history))),
       buffer_(resources.planes.create(std::string(gbuffer_depth_buffer), GL_DEPTH_COMPONENT32F, layer_count())),
       targets_(gbuffer_targets(resources, depth_, -1)),
       draw_(resources, shader_files(settings_.layer_selection), defines()),
@@ -36,10 +34,10 @@ OnePassGBuffer::OnePassGBuffer(const PassResources& resources)
       background_(resources, buffer_) {
     for (Targets& targets : places_) {
         targets.layers = GlFramebuffer(context_, targets_.colours, GlAttachment{&buffer_, -1}, "gbuffer");
-        const GlAttachment comparison{&history_, comparison_layer()};
+        const GlAttachment comparison{&history_.before(), comparison_layer()};
         targets.comparison =
             GlFramebuffer(context_, {&comparison, 1}, GlAttachment{&buffer_, comparison_layer()}, "gbuffer comparison");
-        std::swap(depth_, history_);  // back in their places after two
+        history_.trade_places();  // back in their places after two
     }
 }
 
@@ -47,7 +45,7 @@ bool OnePassGBuffer::looks_ahead() const {
     return settings_.generation == LayerGeneration::delay || settings_.generation == LayerGeneration::predict;
 }
 
-GlTexture& OnePassGBuffer::create_planes(const PassResources& resources) const {
+const GlTexture& OnePassGBuffer::create_planes(const PassResources& resources) const {
     if (settings_.layer_selection == LayerSelection::vertex_shader && !context_.info().has_extension(layer_extension)) {
         throw GlError(
             fmt::format("gbuffer.layer_selection is \"vertex_shader\", but this OpenGL ({}) lacks {}; set it to "
@@ -68,7 +66,7 @@ ShaderDefines OnePassGBuffer::defines() const {
 
 void OnePassGBuffer::execute(const PassFrame& frame) {
     const GladGLContext& gl = context_.gl;
-    std::swap(depth_, history_);
+    history_.trade_places();
     place_ = 1 - place_;
     const Frustum frustum(frame.view.clip_from_camera() * frame.view.camera_from_world());
     const Frustum next(frame.next->clip_from_camera() * frame.next->camera_from_world());
@@ -78,7 +76,7 @@ void OnePassGBuffer::execute(const PassFrame& frame) {
     gl.DepthFunc(test_.nearer);
     if (!has_history) draw_comparison(frustum);
     clear_gbuffer(places_[place_].layers, static_cast<GLint>(targets_.colours.size()), test_);
-    history_.bind(SceneGeometry::first_free_texture_unit);
+    history_.before().bind(SceneGeometry::first_free_texture_unit);
     draw_.set("minimum_separation", separation_in_metres(settings_, frame.view.camera()));
     if (settings_.generation == LayerGeneration::reproject) draw_.set("follow_motion", has_history ? 1 : 0);
     const bool instanced = settings_.layer_selection == LayerSelection::vertex_shader;

@@ -56,16 +56,16 @@ private:
     int layer_count() const { return looks_ahead() ? 3 : 2; }
     // The layer of the last frame's depth that holds what fragments are compared with.
     int comparison_layer() const { return looks_ahead() ? 2 : 0; }
-    GlTexture& create_planes(const PassResources& resources) const;
+    const GlTexture& create_planes(const PassResources& resources) const;
     ShaderDefines defines() const;
     void draw_comparison(const Frustum& frustum) const;
 
     GlContext& context_;
     const GBufferSettings settings_;
     DepthTest test_;
-    GlTexture& depth_;         // of this frame
-    GlTexture& history_;       // of the last one
-    const GlTexture& buffer_;  // the hardware's
+    const GlTexture& depth_;
+    const PlaneHistory& history_;  // of the depth
+    const GlTexture& buffer_;      // the hardware's
     GBufferTargets targets_;
     GBufferDraw draw_, comparison_draw_;
     BackgroundDraw background_;

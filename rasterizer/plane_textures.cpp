@@ -26,6 +26,17 @@ GlTexture& PlaneTextures::adopt(const std::string& name, GlTexture texture) {
     return entry->second;
 }
 
+const PlaneHistory& PlaneTextures::create_history(const std::string& name, const std::string& before) {
+    const GlTexture& now = get(name);
+    create(before, now.format(), now.layers(), now.levels());
+    return histories_.emplace(name, PlaneHistory(textures_.at(name), textures_.at(before))).first->second;
+}
+
+const PlaneHistory* PlaneTextures::history_of(std::string_view name) const {
+    const auto found = histories_.find(name);
+    return found == histories_.end() ? nullptr : &found->second;
+}
+
 const GlTexture& PlaneTextures::get(std::string_view name) const {
     const auto found = textures_.find(name);
     if (found != textures_.end()) return found->second;

@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "rasterizer/gl_objects.h"
+#include "rasterizer/plane_history.h"
 
 namespace plumb {
 
@@ -36,6 +36,10 @@ public:
     GlTexture& create(const std::string& name, GLenum format, int layers, int levels = 1);
     // Adds a texture of another shape (a shadow map) under a name.
     GlTexture& adopt(const std::string& name, GlTexture texture);
+    // Allocates what the plane `name`, which there is, held in the frame before, under the name `before`.
+    const PlaneHistory& create_history(const std::string& name, const std::string& before);
+    // Null where the plane has none.
+    const PlaneHistory* history_of(std::string_view name) const;
     bool has(std::string_view name) const { return textures_.find(name) != textures_.end(); }
     // Throws GlError that lists the planes there are.
     const GlTexture& get(std::string_view name) const;
@@ -46,6 +50,7 @@ private:
     GlContext& context_;
     int width_, height_;
     std::map<std::string, GlTexture, std::less<>> textures_;
+    std::map<std::string, PlaneHistory, std::less<>> histories_;
 };
 
 }  // namespace plumb

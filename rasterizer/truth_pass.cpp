@@ -1,8 +1,11 @@
 #include "rasterizer/truth_pass.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "rasterizer/gbuffer_planes.h"
 #include "rasterizer/gl_error.h"
 #include "rasterizer/normal_encoding.h"
 #include "rasterizer/texture_transfer.h"
@@ -32,14 +35,21 @@ Image encoded_normals(const Image& normals) {
 
 TruthPass::TruthPass(const PassResources& resources, std::vector<std::string> planes) {
     for (std::string& plane : planes) {
-        if (!resources.is_read(plane)) continue;
         const auto [layer, base] = split_layer(plane);
-        if (!resources.planes.has(base)) resources.planes.create(base, format_of(base), resources.layers_of(base));
-        uploads_.push_back({std::move(plane), &resources.planes.get(base), layer});
+        const bool is_kept = base == "depth" && any_layer_is_read(resources, gbuffer_history);
+        if (base == gbuffer_history || !(is_kept || resources.is_read(plane))) continue;
+        if (!resources.planes.has(base)) {
+            const int layers = std::max(resources.layers_of(base), is_kept ? resources.layers_of(gbuffer_history) : 1);
+            resources.planes.create(base, format_of(base), layers);
+            if (is_kept) depth_history_ = &resources.planes.create_history(base, std::string(gbuffer_history));
+        }
+        const GlTexture& texture = resources.planes.get(base);
+        if (layer < texture.layers()) uploads_.push_back({std::move(plane), &texture, layer});
     }
 }
 
 void TruthPass::execute(const PassFrame& frame) {
+    if (depth_history_) depth_history_->trade_places();
     for (const Upload& upload_one : uploads_) {
         if (frame.truth == nullptr || !frame.truth->has(upload_one.plane)) {
             throw MethodError(fmt::format(
@@ -61,9 +71,10 @@ void TruthPass::execute(const PassFrame& frame) {
 PassDeclaration declare_true_gbuffer(const Method& method) {
     PassDeclaration pass;
     pass.name = "gbuffer.truth";
-    pass.outputs = {"depth", "normal", "albedo", "emission"};
+    pass.outputs = {"depth", "normal", "albedo", std::string(gbuffer_history), "emission"};
     for (int layer = 1; layer < method.gbuffer.layers; ++layer) {
-        for (const char* plane : {"depth", "normal", "albedo"}) pass.outputs.push_back(layer_prefix(layer) + plane);
+        for (const std::string plane : {"depth", "normal", "albedo", gbuffer_history.data()})
+            pass.outputs.push_back(layer_prefix(layer) + plane);
     }
     pass.create = [planes = pass.outputs](const PassResources& resources) {
         return std::make_unique<TruthPass>(resources, planes);

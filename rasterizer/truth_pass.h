@@ -21,6 +21,7 @@ private:
         int layer;
     };
     std::vector<Upload> uploads_;
+    const PlaneHistory* depth_history_ = nullptr;  // where the pass gives it
 };
 
 // The G-buffer (all layers of the method) where gbuffer.source is "truth".

@@ -18,18 +18,23 @@ struct ViewBlock {
     float far_plane;
     float pixels_per_metre;
     int first_inner_pixel;
-    float padding[2];
+    glm::vec2 view_shift;
     glm::mat4 next_camera_from_world;
     glm::mat4 next_clip_from_camera;
+    glm::vec2 previous_view_shift;
+    int frame_number;
+    float padding;
 };
 static_assert(offsetof(ViewBlock, view_size) == 256 && offsetof(ViewBlock, near_plane) == 280 &&
-              offsetof(ViewBlock, next_camera_from_world) == 304);
+              offsetof(ViewBlock, view_shift) == 296 && offsetof(ViewBlock, next_camera_from_world) == 304 &&
+              offsetof(ViewBlock, previous_view_shift) == 432);
 
 }  // namespace
 
 ViewUniforms::ViewUniforms(GlContext& context) : buffer_(context, sizeof(ViewBlock), nullptr, GL_DYNAMIC_STORAGE_BIT) {}
 
-void ViewUniforms::update(const View& view, const View& previous, int guard_band, const View* next) const {
+void ViewUniforms::update(const View& view, const View& previous, int guard_band, const View* next,
+                          int frame_number) const {
     ViewBlock block{};
     block.camera_from_world = view.camera_from_world();
     block.world_from_camera = view.camera().world_from_camera;
@@ -44,6 +49,9 @@ void ViewUniforms::update(const View& view, const View& previous, int guard_band
     block.far_plane = view.camera().far_plane;
     block.pixels_per_metre = view.pixels_per_metre();
     block.first_inner_pixel = guard_band;
+    block.view_shift = view.shift();
+    block.previous_view_shift = previous.shift();
+    block.frame_number = frame_number;
     block.next_camera_from_world = (next ? *next : view).camera_from_world();
     block.next_clip_from_camera = (next ? *next : view).clip_from_camera();
     buffer_.write(0, sizeof(block), &block);

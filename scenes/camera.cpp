@@ -64,9 +64,19 @@ View View::with_guard_band(int pixels) const {
     return wide;
 }
 
+View View::with_offset(const glm::vec2& pixels) const {
+    View moved = *this;
+    moved.offset_ = pixels;
+    return moved;
+}
+
+glm::vec2 View::shift() const {
+    return {2.0f * offset_.x / static_cast<float>(width_), -2.0f * offset_.y / static_cast<float>(height_)};
+}
+
 glm::vec3 View::camera_space_point(float x, float y, float depth) const {
-    const float u = 2.0f * x / static_cast<float>(width_) - 1.0f;
-    const float v = 1.0f - 2.0f * y / static_cast<float>(height_);
+    const float u = 2.0f * (x + offset_.x) / static_cast<float>(width_) - 1.0f;
+    const float v = 1.0f - 2.0f * (y + offset_.y) / static_cast<float>(height_);
     return depth * glm::vec3(u * tan_half_width_, v * tan_half_height_, -1.0f);
 }
 
@@ -88,7 +98,8 @@ glm::vec3 View::project(const glm::vec3& world) const {
     const float depth = -p.z;
     const float u = p.x / (depth * tan_half_width_);
     const float v = p.y / (depth * tan_half_height_);
-    return {0.5f * (u + 1.0f) * static_cast<float>(width_), 0.5f * (1.0f - v) * static_cast<float>(height_), depth};
+    return {0.5f * (u + 1.0f) * static_cast<float>(width_) - offset_.x,
+            0.5f * (1.0f - v) * static_cast<float>(height_) - offset_.y, depth};
 }
 
 glm::mat4 View::clip_from_camera() const {
@@ -96,6 +107,9 @@ glm::mat4 View::clip_from_camera() const {
     glm::mat4 clip(0.0f);
     clip[0][0] = 1.0f / tan_half_width_;
     clip[1][1] = 1.0f / tan_half_height_;
+    // NDC less the shift, with w_clip = -z.
+    clip[2][0] = shift().x;
+    clip[2][1] = shift().y;
     // z_clip = a z + b with w_clip = -z: 1 at z = -near, 0 at z = -far.
     clip[2][2] = near_plane / (far_plane - near_plane);
     clip[3][2] = near_plane * far_plane / (far_plane - near_plane);

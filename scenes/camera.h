@@ -32,7 +32,7 @@ struct Camera {
     glm::vec3 position() const { return glm::vec3(world_from_camera[3]); }
 };
 
-// A camera seen at a resolution, optionally widened by a guard band on each side.
+// A camera seen at a resolution, optionally widened by a guard band on each side, or with its pixels displaced.
 class View {
 public:
     // Throws SceneError unless the sizes are positive, 0 < near < far, and the lens is one.
@@ -40,11 +40,15 @@ public:
 
     // The same view with `pixels` more on each side; pixel (i, j) of this view is pixel (i + pixels, j + pixels) of it.
     View with_guard_band(int pixels) const;
+    // The same view with its pixels moved over the image plane: (x, y) of the result sees what (x + offset.x,
+    // y + offset.y) of the view without an offset sees. For sub-pixel jitter.
+    View with_offset(const glm::vec2& pixels) const;
 
     const Camera& camera() const { return camera_; }
     int width() const { return width_; }
     int height() const { return height_; }
     const glm::mat4& camera_from_world() const { return camera_from_world_; }
+    const glm::vec2& offset() const { return offset_; }  // pixels, y downwards
 
     // The ray through continuous pixel coordinates, from the camera's position (not from the near plane).
     Ray pixel_ray(float x, float y) const;
@@ -60,6 +64,8 @@ public:
     float pixels_per_metre() const { return 0.5f * static_cast<float>(height_) / tan_half_height_; }
     // Half the width and height of the view at 1 m depth.
     glm::vec2 tan_half() const { return {tan_half_width_, tan_half_height_}; }
+    // The offset in normalised device coordinates: the middle of the view sees the camera's point `shift` of them.
+    glm::vec2 shift() const;
 
     // Clip coordinates from camera space for OpenGL with glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE) and reversed
     // depth (near = 1, far = 0), which keeps float depth equally precise over the whole range. NDC +Y is up: image row
@@ -70,6 +76,7 @@ private:
     Camera camera_;
     int width_, height_;
     float tan_half_width_, tan_half_height_;
+    glm::vec2 offset_{0.0f};
     glm::mat4 camera_from_world_;
 };
 

@@ -1,0 +1,31 @@
+// Where the surface point that a pixel shows was in the frame before (FrameRequest::previous): what moving cameras and
+// moving instances have in common. reprojection.h is the other half.
+//
+// Define: DISPLACEMENT_UNIT, the texture unit of the plane `displacement`; without it no instance moves.
+#include "view.glsl"
+
+#ifdef DISPLACEMENT_UNIT
+layout(binding = DISPLACEMENT_UNIT) uniform sampler2DArray displacement_plane;
+#endif
+
+struct PreviousPlace {
+    vec3 point;     // metres, in the camera space of then; of the background: its direction from the camera
+    vec2 pixel;     // where the planes of then show it, as gl_FragCoord.xy counts; means nothing where not in_front
+    bool in_front;  // of the camera of then; it may still lie outside its image or be hidden
+};
+
+// The background stays infinitely far away. Points are taken relative to the camera first, so that no precision is lost
+// far from the origin.
+PreviousPlace previous_place(ivec2 pixel, int layer, float depth) {
+    vec2 centre = vec2(pixel) + 0.5;
+    vec4 point = is_background(depth) ? vec4(camera_space_point(centre, 1.0), 0.0)
+                                      : vec4(camera_space_point(centre, depth), 1.0);
+#ifdef DISPLACEMENT_UNIT
+    if (!is_background(depth)) point.xyz += texelFetch(displacement_plane, ivec3(pixel, layer), 0).xyz;
+#endif
+    PreviousPlace place;
+    place.point = (previous_camera_from_camera * point).xyz;
+    place.pixel = previous_pixel_of(place.point);
+    place.in_front = place.point.z < 0.0;
+    return place;
+}
