@@ -18,15 +18,51 @@ MethodChoice choice(Enumeration& value, std::vector<std::string> names) {
 }
 
 void add_blur(std::vector<MethodParameter>& parameters, const std::string& prefix, BilateralBlurSettings& blur) {
+    parameters.insert(parameters.end(),
+                      {
+                          {prefix + "kind", choice(blur.kind, {"bilateral", "gaussian_2015", "gaussian_2015_listing"})},
+                          {prefix + "radius", &blur.radius, 0, 64},
+                          {prefix + "step", &blur.step, 1, 64},
+                          {prefix + "depth_sharpness", &blur.depth_sharpness, 0, 1e6},
+                          {prefix + "normal_sharpness", &blur.normal_sharpness, 0, 1e6},
+                          {prefix + "plane_sharpness", &blur.plane_sharpness, 0, 1e6},
+                          {prefix + "monotonic", &blur.monotonic},
+                          {prefix + "depth_key_bits", &blur.depth_key_bits, 8, 32},
+                      });
+}
+
+void add_temporal(std::vector<MethodParameter>& parameters, const std::string& prefix, TemporalFilterSettings& filter) {
     parameters.insert(parameters.end(), {
-                                            {prefix + "radius", &blur.radius, 0, 64},
-                                            {prefix + "step", &blur.step, 1, 64},
-                                            {prefix + "depth_sharpness", &blur.depth_sharpness, 0, 1e6},
-                                            {prefix + "normal_sharpness", &blur.normal_sharpness, 0, 1e6},
-                                            {prefix + "plane_sharpness", &blur.plane_sharpness, 0, 1e6},
-                                            {prefix + "monotonic", &blur.monotonic},
-                                            {prefix + "depth_key_bits", &blur.depth_key_bits, 8, 32},
+                                            {prefix + "alpha", &filter.alpha, 0, 0.99},
+                                            {prefix + "reject_from", &filter.reject_from, 0, 1e6},
+                                            {prefix + "reject_to", &filter.reject_to, 0, 1e6},
+                                            {prefix + "layers", &filter.layers, 1, 2},
+                                            {prefix + "vary_taps", &filter.vary_taps},
                                         });
+}
+
+// Why parameter `name` of a blur changes nothing; empty where it matters. `group` is its prefix.
+std::string blur_reason(const BilateralBlurSettings& blur, std::string_view group, std::string_view name) {
+    if (!name.starts_with(group)) return "";
+    name.remove_prefix(group.size());
+    if (name != "radius" && blur.radius == 0) return fmt::format("{}radius = 0", group);
+    if (blur.kind != BlurKind::bilateral && name != "kind" && name != "radius" && name != "step")
+        return fmt::format("{}kind is not \"bilateral\"", group);
+    if (name == "depth_key_bits" && blur.depth_sharpness == 0.0f) return fmt::format("{}depth_sharpness = 0", group);
+    return "";
+}
+
+// The same of what is kept from frame to frame.
+std::string temporal_reason(const Method& method, std::string_view name) {
+    if (name.starts_with("ao.temporal.") && name != "ao.temporal.alpha" && method.ao.temporal.alpha == 0.0f)
+        return "ao.temporal.alpha = 0";
+    if (name.starts_with("radiosity.temporal.") && name != "radiosity.temporal.alpha" &&
+        method.radiosity.temporal.alpha == 0.0f) {
+        return "radiosity.temporal.alpha = 0";
+    }
+    if (name.starts_with("antialias.") && name != "antialias.temporal" && !method.antialias.temporal)
+        return "antialias.temporal = false";
+    return "";
 }
 
 // Why parameter `name` of the shadow maps changes nothing; empty where it matters.
@@ -128,6 +164,7 @@ std::vector<MethodParameter> method_parameters(Method& m) {
         {"ao.mip_offset", &m.ao.mip_offset, 0, 16},
     };
     add_blur(parameters, "ao.blur.", m.ao.blur);
+    add_temporal(parameters, "ao.temporal.", m.ao.temporal);
     parameters.insert(parameters.end(),
                       {
                           {"radiosity.enabled", &m.radiosity.enabled},
@@ -142,6 +179,16 @@ std::vector<MethodParameter> method_parameters(Method& m) {
                           {"radiosity.minimum_mip_level", &m.radiosity.minimum_mip_level, 0, 5},
                       });
     add_blur(parameters, "radiosity.blur.", m.radiosity.blur);
+    add_temporal(parameters, "radiosity.temporal.", m.radiosity.temporal);
+    parameters.insert(parameters.end(),
+                      {
+                          {"antialias.temporal", &m.antialias.temporal},
+                          {"antialias.jitter_length", &m.antialias.jitter_length, 1, 1024},
+                          {"antialias.alpha", &m.antialias.alpha, 0, 0.9999},
+                          {"antialias.clamp", &m.antialias.clamp},
+                          {"antialias.dilate", &m.antialias.dilate},
+                          {"antialias.lookup", choice(m.antialias.lookup, {"bilinear", "catmull_rom"})},
+                      });
     return parameters;
 }
 
@@ -162,14 +209,10 @@ std::string reason_without_effect(const Method& method, std::string_view name) {
     }
     if (std::string reason = shadow_reason(method.direct.shadow, name); !reason.empty()) return reason;
     if (std::string reason = light_reason(method.direct, name); !reason.empty()) return reason;
-    const auto blur_reason = [&](std::string_view group, const BilateralBlurSettings& blur) {
-        const bool off = name.starts_with(group) && name != fmt::format("{}radius", group) && blur.radius == 0;
-        if (off) return fmt::format("{}radius = 0", group);
-        const bool no_keys = name == fmt::format("{}depth_key_bits", group) && blur.depth_sharpness == 0.0f;
-        return no_keys ? fmt::format("{}depth_sharpness = 0", group) : std::string();
-    };
-    if (std::string reason = blur_reason("ao.blur.", method.ao.blur); !reason.empty()) return reason;
-    if (std::string reason = blur_reason("radiosity.blur.", method.radiosity.blur); !reason.empty()) return reason;
+    if (std::string reason = blur_reason(method.ao.blur, "ao.blur.", name); !reason.empty()) return reason;
+    if (std::string reason = blur_reason(method.radiosity.blur, "radiosity.blur.", name); !reason.empty())
+        return reason;
+    if (std::string reason = temporal_reason(method, name); !reason.empty()) return reason;
     if (!method.ao.use_mip_chain && name == "ao.mip_offset") return "ao.use_mip_chain = false";
     if (!method.radiosity.use_mip_chain && (name == "radiosity.mip_offset" || name == "radiosity.minimum_mip_level")) {
         return "radiosity.use_mip_chain = false";

@@ -8,6 +8,7 @@
 #include "rasterizer/falloff.h"
 #include "rasterizer/gbuffer_planes.h"
 #include "rasterizer/gl_error.h"
+#include "rasterizer/temporal_filter.h"
 
 namespace plumb {
 namespace {
@@ -17,7 +18,12 @@ constexpr std::string_view guard_band_reader = "direct";
 
 bool is_blurred(const Method& method) { return method.ao.blur.radius > 0; }
 
-std::string output_plane(const Method& method) { return is_blurred(method) ? "ao.unfiltered" : "ao"; }
+// What the temporal filter averages.
+std::string plane_of_frame(const Method& method) { return method.ao.temporal.alpha > 0.0f ? "ao.of_frame" : "ao"; }
+
+std::string output_plane(const Method& method) { return is_blurred(method) ? "ao.unfiltered" : plane_of_frame(method); }
+
+std::string reason_to_be_off(const Method& method) { return method.ao.enabled ? "" : "method.ao.enabled is false"; }
 
 std::string depth_plane(const Method& method) {
     return method.ao.use_mip_chain ? std::string(depth_mip_chain_plane) : "depth";
@@ -52,7 +58,7 @@ std::string in_capitals(std::string_view name) {
 ShaderDefines shader_defines(const PassResources& resources) {
     const AmbientObscuranceSettings& settings = resources.method.ao;
     require_sound(settings, resources.quantities);
-    ShaderDefines defines = SampleSpiral::defines(settings.samples);
+    ShaderDefines defines = SampleSpiral::defines(settings.samples, taps_vary(settings.temporal));
     using enum AmbientObscuranceEstimator;
     for (const auto estimator : {mara2016, g3d_demo, sao2012, linear}) {
         defines.emplace_back(in_capitals(to_string(estimator)), std::to_string(static_cast<int>(estimator)));
@@ -118,7 +124,7 @@ std::vector<PassDeclaration> declare_ambient_obscurance(const Method& method, co
         .inputs = {"depth", "normal", depth},
         .outputs = {output_plane(method)},
         .create = [](const PassResources& resources) { return std::make_unique<AmbientObscurancePass>(resources); },
-        .disabled = method.ao.enabled ? "" : "method.ao.enabled is false",
+        .disabled = reason_to_be_off(method),
         .remark = fmt::format("{}, {} taps, {} layer{}", to_string(method.ao.estimator), method.ao.samples,
                               method.ao.layers, method.ao.layers == 1 ? "" : "s")};
     if (method.ao.layers > 1) pass.inputs.push_back(std::string(second_layer_prefix) + depth);
@@ -130,12 +136,24 @@ std::vector<PassDeclaration> declare_ambient_obscurance(const Method& method, co
                                                  .settings = method.ao.blur,
                                                  .quantity_radius = quantities.ao_radius,
                                                  .input = output_plane(method),
-                                                 .output = "ao",
+                                                 .output = plane_of_frame(method),
                                                  .read_beyond = std::string(guard_band_reader),
                                                  .stored_positions = stores_positions(method)}));
         passes.back().disabled = passes.front().disabled;
     }
     return passes;
+}
+
+PassDeclaration declare_ambient_obscurance_over_time(const Scene& scene, const Method& method) {
+    PassDeclaration pass = declare_temporal_filter(scene, {.name = "ambient obscurance over time",
+                                                           .group = "ao.temporal",
+                                                           .settings = method.ao.temporal,
+                                                           .input = plane_of_frame(method),
+                                                           .output = "ao",
+                                                           .weight = "ao.history_weight",
+                                                           .read_beyond = std::string(guard_band_reader)});
+    if (!method.ao.enabled) pass.disabled = reason_to_be_off(method);
+    return pass;
 }
 
 }  // namespace plumb

@@ -36,7 +36,7 @@
 
 namespace plumb {
 
-// Writes the plane `ao`, or `ao.unfiltered` where the method blurs it.
+// Writes the plane `ao`, or `ao.unfiltered` where the method blurs it, or else what the temporal filter takes.
 class AmbientObscurancePass final : public Pass {
 public:
     // Throws MethodError for an infinite radius and other parameters out of range.
@@ -53,8 +53,10 @@ private:
     InnerArea area_;
 };
 
-// The pass and its blur. Output: the plane `ao`.
+// The pass and its blur. Output: the plane `ao`, or `ao.of_frame` where the method filters it over time.
 std::vector<PassDeclaration> declare_ambient_obscurance(const Method& method, const Quantities& quantities);
+// The temporal filter. Outputs: `ao`; `ao.history_weight`, the weight that the frame before had at each pixel.
+PassDeclaration declare_ambient_obscurance_over_time(const Scene& scene, const Method& method);
 
 std::string_view to_string(AmbientObscuranceEstimator estimator);
 

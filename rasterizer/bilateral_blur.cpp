@@ -31,10 +31,13 @@ void require_sound(const BilateralBlurRequest& request) {
     }
 }
 
-std::string gaussian_weights(int radius) {
+// Of a kind that compares surfaces, not only depths.
+bool compares_surfaces(const BilateralBlurSettings& settings) { return settings.kind == BlurKind::bilateral; }
+
+std::string gaussian_weights(const BilateralBlurSettings& settings) {
     std::string weights;
-    const double sigma = 0.5 * radius;
-    for (int i = 0; i <= radius; ++i) {
+    const double sigma = settings.radius / (compares_surfaces(settings) ? 2.0 : 3.0);
+    for (int i = 0; i <= settings.radius; ++i) {
         weights += i == 0 ? "" : ", ";
         weights += shader_literal(static_cast<float>(std::exp(-0.5 * i * i / (sigma * sigma))));
     }
@@ -45,21 +48,33 @@ ShaderDefines defines_along(const char* direction, const BilateralBlurRequest& r
     require_sound(request);
     const BilateralBlurSettings& settings = request.settings;
     ShaderDefines defines = {{"DIRECTION", direction},
+                             {"LAYER", std::to_string(request.layer)},
                              {"BLUR_RADIUS", std::to_string(settings.radius)},
                              {"STEP", std::to_string(settings.step)},
-                             {"MONOTONIC", settings.monotonic ? "1" : "0"},
-                             {"DEPTH_SHARPNESS", shader_literal(settings.depth_sharpness / request.quantity_radius)},
-                             {"NORMAL_SHARPNESS", shader_literal(settings.normal_sharpness)},
-                             {"PLANE_SHARPNESS", shader_literal(settings.plane_sharpness)},
-                             {"GAUSSIAN_WEIGHTS", gaussian_weights(settings.radius)}};
+                             {"BILATERAL", "0"},
+                             {"GAUSSIAN_2015", "1"},
+                             {"GAUSSIAN_2015_LISTING", "2"},
+                             {"KIND", std::to_string(static_cast<int>(settings.kind))},
+                             {"GAUSSIAN_WEIGHTS", gaussian_weights(settings)}};
+    if (!compares_surfaces(settings)) return defines;
+    defines.emplace_back("MONOTONIC", settings.monotonic ? "1" : "0");
+    defines.emplace_back("DEPTH_SHARPNESS", shader_literal(settings.depth_sharpness / request.quantity_radius));
+    defines.emplace_back("NORMAL_SHARPNESS", shader_literal(settings.normal_sharpness));
+    defines.emplace_back("PLANE_SHARPNESS", shader_literal(settings.plane_sharpness));
     if (settings.depth_key_bits < 32)
         defines.emplace_back("DEPTH_KEYS", fmt::format("{}.0", (1 << settings.depth_key_bits) - 1));
     return defines;
 }
 
-GlFramebuffer framebuffer_of(const GlTexture& texture) {
-    const GlAttachment attachment{&texture, 0, 0};
+GlFramebuffer framebuffer_of(const GlTexture& texture, int layer) {
+    const GlAttachment attachment{&texture, layer, 0};
     return GlFramebuffer(texture.context(), {&attachment, 1}, {}, "bilateral blur");
+}
+
+// Whichever layer's pass is made first allocates for both.
+const GlTexture& output_of(const PassResources& resources, const BilateralBlurRequest& request, GLenum format) {
+    if (resources.planes.has(request.output)) return resources.planes.get(request.output);
+    return resources.planes.create(request.output, format, resources.layers_of(request.output));
 }
 
 }  // namespace
@@ -85,39 +100,48 @@ int blur_reach(const BilateralBlurSettings& settings) { return settings.radius *
 BilateralBlurPass::BilateralBlurPass(const PassResources& resources, const BilateralBlurRequest& request)
     : noisy_(resources.planes.get(request.input)),
       depth_(resources.planes.get("depth")),
-      normal_(resources.planes.get("normal")),
-      position_(stored_positions(resources)),
+      layer_(request.layer),
       half_blurred_(GlTexture::array(resources.context, noisy_.format(), noisy_.width(), noisy_.height(), 1)),
       along_rows_(resources.context, resources.programs, "bilateral_blur.frag", defines_along("ivec2(1, 0)", request)),
       along_columns_(resources.context, resources.programs, "bilateral_blur.frag",
                      defines_along("ivec2(0, 1)", request)),
-      half_blurred_target_(framebuffer_of(half_blurred_)),
-      target_(framebuffer_of(resources.planes.create(request.output, noisy_.format(), 1))),
+      half_blurred_target_(framebuffer_of(half_blurred_, 0)),
+      target_(framebuffer_of(output_of(resources, request, noisy_.format()), request.layer)),
       area_of_rows_(resources, {0, blur_reach(request.settings)}, request.read_beyond),
-      area_(resources, {0, 0}, request.read_beyond) {}
+      area_(resources, {0, 0}, request.read_beyond) {
+    if (!compares_surfaces(request.settings)) return;
+    normal_ = &resources.planes.get("normal");
+    position_ = stored_positions(resources);
+}
 
 void BilateralBlurPass::execute(const PassFrame&) {
     noisy_.bind(0);
     depth_.bind(1);
-    normal_.bind(2);
+    if (normal_) normal_->bind(2);
     if (position_) position_->bind(stored_position_unit);
     {
         const InnerArea::Restriction restriction(area_of_rows_);
+        along_rows_.program().set("noisy_layer", layer_);
         along_rows_.draw(half_blurred_target_);
     }
     half_blurred_.bind(0);
     const InnerArea::Restriction restriction(area_);
+    along_columns_.program().set("noisy_layer", 0);
     along_columns_.draw(target_);
 }
 
 PassDeclaration declare_bilateral_blur(const BilateralBlurRequest& request) {
+    const std::string prefix = layer_prefix(request.layer);
     PassDeclaration pass{.name = request.name,
-                         .inputs = {request.input, "depth", "normal"},
-                         .outputs = {request.output},
+                         .inputs = {prefix + request.input, prefix + "depth"},
+                         .outputs = {prefix + request.output},
                          .create = [request](const PassResources& resources) {
                              return std::make_unique<BilateralBlurPass>(resources, request);
                          }};
-    if (request.stored_positions) pass.inputs.emplace_back("camera_position");
+    if (compares_surfaces(request.settings)) {
+        pass.inputs.push_back(prefix + "normal");
+        if (request.stored_positions) pass.inputs.push_back(prefix + "camera_position");
+    }
     return pass;
 }
 

@@ -1,8 +1,9 @@
 // One direction of the edge-aware blur; bilateral_blur.h has the weights.
 //
-// Defines: DIRECTION (ivec2), BLUR_RADIUS, STEP, MONOTONIC (0, 1), DEPTH_SHARPNESS (per metre), NORMAL_SHARPNESS,
-// PLANE_SHARPNESS, GAUSSIAN_WEIGHTS (of distance 0 to BLUR_RADIUS), DEPTH_KEYS (how many values a key has besides 0; none:
-// depths are compared as they are).
+// Defines: LAYER (whose surfaces), DIRECTION (ivec2), BLUR_RADIUS, STEP, GAUSSIAN_WEIGHTS (of distance 0 to BLUR_RADIUS),
+// KIND with the names of its values, and of the bilateral kind: MONOTONIC (0, 1), DEPTH_SHARPNESS (per metre),
+// NORMAL_SHARPNESS, PLANE_SHARPNESS, DEPTH_KEYS (how many values a key has besides 0; none: depths are compared as they
+// are).
 
 #include "depth_mip_chain.glsl"
 #include "normal_encoding.glsl"
@@ -10,11 +11,13 @@
 layout(binding = 0) uniform sampler2DArray noisy;
 layout(binding = 1) uniform sampler2DArray depth;
 layout(binding = 2) uniform sampler2DArray normal;
+uniform int noisy_layer;
 
 layout(location = 0) out vec4 smoothed;
 
 const float gaussian[BLUR_RADIUS + 1] = float[](GAUSSIAN_WEIGHTS);
 
+#if KIND == BILATERAL
 struct Surface {
     float depth;
     vec3 point, normal;  // camera space, world space
@@ -22,9 +25,9 @@ struct Surface {
 
 Surface surface_at(ivec2 pixel) {
     Surface surface;
-    surface.depth = texelFetch(depth, ivec3(pixel, 0), 0).r;
-    surface.point = surface_point(pixel, 0, surface.depth);
-    surface.normal = normal_of_texel(texelFetch(normal, ivec3(pixel, 0), 0));
+    surface.depth = texelFetch(depth, ivec3(pixel, LAYER), 0).r;
+    surface.point = surface_point(pixel, LAYER, surface.depth);
+    surface.normal = normal_of_texel(texelFetch(normal, ivec3(pixel, LAYER), 0));
     return surface;
 }
 
@@ -45,10 +48,26 @@ float edge_weight(Surface centre, Surface tap) {
     float plane_weight = max(0.0, 1.0 - 2.0 * PLANE_SHARPNESS * off_plane);
     return is_background(tap.depth) ? 0.0 : depth_weight * normal_weight * plane_weight * plane_weight;
 }
+#else
+struct Surface {
+    float depth;
+};
+
+Surface surface_at(ivec2 pixel) { return Surface(texelFetch(depth, ivec3(pixel, LAYER), 0).r); }
+
+float edge_weight(Surface centre, Surface tap) {
+    // Of values of a depth buffer, which would cancel.
+    float difference = near_plane * far_plane / (far_plane - near_plane) * abs(1.0 / tap.depth - 1.0 / centre.depth);
+#if KIND == GAUSSIAN_2015_LISTING
+    difference = sqrt(difference);
+#endif
+    return is_background(tap.depth) ? 0.0 : max(0.0, 1.0 - difference);
+}
+#endif
 
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
-    vec4 value = texelFetch(noisy, ivec3(pixel, 0), 0);
+    vec4 value = texelFetch(noisy, ivec3(pixel, noisy_layer), 0);
     Surface centre = surface_at(pixel);
     smoothed = value;
     if (is_background(centre.depth)) return;
@@ -62,13 +81,13 @@ void main() {
             ivec2 position = pixel + side * i * STEP * DIRECTION;
             ivec2 tap = clamp(position, ivec2(0), image_size - 1);
             float edge = is_inside(position) ? edge_weight(centre, surface_at(tap)) : 0.0;
-#if MONOTONIC
+#if KIND == BILATERAL && MONOTONIC
             smallest = min(smallest, edge);
             edge = smallest;
 #endif
             float weight = gaussian[i] * edge;
             total += weight;
-            difference += weight * (texelFetch(noisy, ivec3(tap, 0), 0) - value);
+            difference += weight * (texelFetch(noisy, ivec3(tap, noisy_layer), 0) - value);
         }
     }
     smoothed = value + difference / total;

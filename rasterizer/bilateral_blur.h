@@ -12,12 +12,24 @@
 // of the far plane (8 bits show bands, as implementers report). Keys are made as they are compared, not stored: the
 // image is that of stored ones, the time is not.
 //
+// The kinds gaussian_2015 (as the thesis' text prints it) and gaussian_2015_listing (as its program has it) know depth
+// alone, and other widths:
+//
+//     weight    = exp(-i^2 / (2 sigma^2)) w_depth,   sigma = R / 3
+//     w_depth   = max(0, 1 - |Z - Z'|)               gaussian_2015
+//                 max(0, 1 - sqrt |Z - Z'|)          gaussian_2015_listing
+//
+// Z is the value of a depth buffer of the standard mapping, 0 at the near plane and 1 at the far one, whatever
+// gbuffer.depth_mapping is: Z = far (z - near) / (z (far - near)). Beyond some metres all Z are nearly 1, so that
+// gaussian_2015 stops at few edges; the root makes more of small differences.
+//
 // Where `monotonic` is set, there is no edge weight (w_depth w_normal w_plane^2) larger than that of the pixels
 // between. Pixels outside the image and background have weight 0; background is left as it is. A constant image stays
 // the same bit for bit.
 //   Source: the filters that Mara et al. ship with G3D, their constants turned into metres; the exemption from the
-//   plane weight that they grant to pixels close in space is left out: it blurs across contacts. Good for: noise of 10
-//   to 60 taps. Bad for: thin objects, whose few pixels have few neighbours.
+//   plane weight that they grant to pixels close in space is left out: it blurs across contacts. The other kinds:
+//   Nielsen 2015 (section 2.5 and listings 3.34 to 3.37), whose program turns background black, which nothing reads.
+//   Good for: noise of 10 to 60 taps. Bad for: thin objects, whose few pixels have few neighbours.
 #pragma once
 
 #include <string>
@@ -34,6 +46,9 @@ public:
     // Where somebody reads the plane `read_beyond`, whose pass reads the guard band as well, the area is the whole
     // image.
     InnerArea(const PassResources& resources, glm::ivec2 reach, std::string_view read_beyond = {});
+
+    // Width and height of what lies outside on each side, in pixels.
+    glm::ivec2 corner() const { return corner_; }
 
     class Restriction {
     public:
@@ -58,7 +73,8 @@ struct BilateralBlurRequest {
     std::string name;                // of the pass
     BilateralBlurSettings settings;  // radius > 0
     float quantity_radius = 1.0f;    // metres
-    std::string input, output;       // planes
+    std::string input, output;       // planes, without a layer's prefix
+    int layer = 0;                   // whose surfaces the planes belong to
     std::string read_beyond = {};    // see InnerArea
     bool stored_positions = false;   // the plane camera_position is read
 };
@@ -71,8 +87,9 @@ public:
 private:
     const GlTexture& noisy_;
     const GlTexture& depth_;
-    const GlTexture& normal_;
-    const GlTexture* position_;  // where positions are stored
+    const GlTexture* normal_ = nullptr;    // where the kind looks at normals
+    const GlTexture* position_ = nullptr;  // and at positions, and they are stored
+    int layer_;
     GlTexture half_blurred_;
     FullscreenDraw along_rows_, along_columns_;
     GlFramebuffer half_blurred_target_, target_;

@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "rasterizer/temporal_antialias.h"
+
 namespace plumb {
 namespace {
 
@@ -21,7 +23,7 @@ CompositePass::CompositePass(const PassResources& resources)
       draw_(resources.context, resources.programs, "composite.frag", defines(resources.scene, resources.method)) {
     if (has_emission(resources.scene)) emission_ = &resources.planes.get("emission");
     if (resources.method.radiosity.enabled) indirect_ = &resources.planes.get("indirect");
-    const GlTexture& total = resources.planes.create("total", GL_RGBA16F, 1);
+    const GlTexture& total = resources.planes.create(composited_plane(resources.method), GL_RGBA16F, 1);
     target_ = GlFramebuffer(resources.context, std::array{GlAttachment{&total}}, {}, "composite");
 }
 
@@ -45,7 +47,7 @@ PassDeclaration declare_composite(const Scene& scene, const Method& method) {
         pass.inputs.emplace_back("indirect");
         pass.remark += " + indirect";
     }
-    pass.outputs = {"total"};
+    pass.outputs = {composited_plane(method)};
     pass.create = [](const PassResources& resources) { return std::make_unique<CompositePass>(resources); };
     return pass;
 }

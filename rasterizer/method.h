@@ -84,8 +84,13 @@ struct ProbeSettings {
     bool every_frame = false;            // captured anew for each frame, for lights and objects that move
 };
 
-// The separable filter that smooths the noise of few taps along surfaces (bilateral_blur.h has the weights' formulas).
+// Which differences keep a neighbour from being blurred in (bilateral_blur.h has the formulas): depth, normal and
+// tangent plane; or, after Nielsen 2015, depth alone, as the thesis' text has it or as its listing does.
+enum class BlurKind { bilateral, gaussian_2015, gaussian_2015_listing };
+
+// The separable filter that smooths the noise of few taps along surfaces.
 struct BilateralBlurSettings {
+    BlurKind kind = BlurKind::bilateral;
     int radius = 4;              // taps to each side; 0: no filter
     int step = 1;                // pixels between taps
     float depth_sharpness = 10;  // relative to the filtered quantity's radius: 10 rejects depths a tenth of it away
@@ -93,6 +98,15 @@ struct BilateralBlurSettings {
     float plane_sharpness = 1;   // rejects points off the centre's tangent plane
     bool monotonic = true;       // a weight never rises again beyond an edge
     int depth_key_bits = 32;     // 8, 16: depths are compared as fractions of the far plane of so many bits
+};
+
+// What a pass takes over from the frame before, reprojected (temporal_filter.h has the formula).
+struct TemporalFilterSettings {
+    float alpha = 0.0f;         // weight of the frame before; 0: no filter
+    float reject_from = 0.05f;  // metres that a point may be from where it is looked for, before its weight falls...
+    float reject_to = 0.07f;    // ...until nothing is left here; as reject_from: a hard cut
+    int layers = 1;             // 2: the second layer of the frame before may hold the point as well
+    bool vary_taps = true;      // other taps in each frame: without, the filter averages one and the same noise
 };
 
 // Which formula turns taps into ambient visibility; each is named after its source (ambient_obscurance.h has them).
@@ -109,6 +123,7 @@ struct AmbientObscuranceSettings {
     bool use_mip_chain = true;  // reads coarser depth for far taps: constant cost over radius
     int mip_offset = 3;         // a tap r' pixels away reads level floor(log2 r') - mip_offset
     BilateralBlurSettings blur = {};
+    TemporalFilterSettings temporal = {};  // after the blur
 };
 
 // What the sum over the taps is divided by: the taps that hit (as the paper), or all of them.
@@ -126,6 +141,20 @@ struct RadiositySettings {
     int mip_offset = 4;         // a tap r' pixels away reads level floor(log2 r') - mip_offset
     int minimum_mip_level = 0;  // 0..5; higher is faster and noisier
     BilateralBlurSettings blur = {.depth_sharpness = 0, .normal_sharpness = 40, .plane_sharpness = 0.5f};
+    TemporalFilterSettings temporal = {};  // after the blur
+};
+
+// How the resolved image is looked up between its pixels: bilinear smooths what moves, Catmull-Rom hardly does.
+enum class HistoryLookup { bilinear, catmull_rom };
+
+// Anti-aliasing over frames, each of which is rendered with its pixels moved by a part of one (temporal_antialias.h).
+struct AntialiasSettings {
+    bool temporal = false;
+    int jitter_length = 8;  // frames until the offsets repeat
+    float alpha = 0.9f;     // most weight of the frames before
+    bool clamp = true;      // they are held within the colours of the neighbouring pixels
+    bool dilate = true;     // motion is that of the nearest surface among the neighbours: edges move as one
+    HistoryLookup lookup = HistoryLookup::bilinear;
 };
 
 // Radius and falloff of ambient visibility are not here: they belong to the quantity that is asked for (Quantities).
@@ -137,6 +166,7 @@ struct Method {
     ProbeSettings probe;
     AmbientObscuranceSettings ao;
     RadiositySettings radiosity;
+    AntialiasSettings antialias;
 };
 
 }  // namespace plumb

@@ -60,6 +60,7 @@ struct PassFrame {
     bool continues = false;
     // The frame before was told of this very one as its next.
     bool foretold = false;
+    int number = 0;  // frames since the last cut: 0 unless `continues`
 };
 
 class Pass {

@@ -17,6 +17,7 @@
 #include "rasterizer/probe_pass.h"
 #include "rasterizer/radiosity.h"
 #include "rasterizer/shadow_pass.h"
+#include "rasterizer/temporal_antialias.h"
 #include "rasterizer/truth_pass.h"
 
 namespace plumb {
@@ -74,6 +75,14 @@ void validate(const Method& method) {
             fmt::format("environment.samples is {}; it must lie between 1 and 65536", method.environment.samples));
     require(shadow.bias >= 0.0f && std::isfinite(shadow.bias), method,
             fmt::format("direct.shadow.bias is {}; it must be zero or more metres", shadow.bias));
+    const AntialiasSettings& antialias = method.antialias;
+    require(antialias.jitter_length >= 1 && antialias.alpha >= 0.0f && antialias.alpha < 1.0f, method,
+            fmt::format("antialias.jitter_length is {} and antialias.alpha is {}; the first must be at least 1, the "
+                        "second not negative and less than 1, else nothing new comes in",
+                        antialias.jitter_length, antialias.alpha));
+    require(!(any_truth && antialias.temporal), method,
+            "antialias.temporal moves the view by parts of a pixel, and planes from the truth do not follow; set it to "
+            "false, or gbuffer.source and direct.source to \"method\"");
     require(!(any_truth && gbuffer.guard_band > 0), method,
             "planes from the truth have no guard band; set gbuffer.guard_band to 0");
 }
@@ -91,6 +100,7 @@ std::vector<PassDeclaration> declare_passes(const Scene& scene, const Method& me
     for (int layer = 0; layer < most_layers; ++layer) passes.push_back(declare_motion(scene, layer));
     add_all(declare_depth_mip_chain());
     add_all(declare_ambient_obscurance(method, quantities));
+    passes.push_back(declare_ambient_obscurance_over_time(scene, method));
     passes.push_back(declare_shadows(lights, method));
     passes.push_back(declare_light_volumes(scene, lights, method, 0));
     passes.push_back(declare_light_volumes(scene, lights, method, 1));
@@ -101,6 +111,7 @@ std::vector<PassDeclaration> declare_passes(const Scene& scene, const Method& me
     passes.push_back(declare_direct_light(scene, lights, method, 1));
     add_all(declare_radiosity(method));
     passes.push_back(declare_composite(scene, method));
+    passes.push_back(declare_temporal_antialias(scene, method));
     return passes;
 }
 

@@ -12,6 +12,7 @@
 #include "rasterizer/passes.h"
 #include "rasterizer/plane_reader.h"
 #include "rasterizer/scene_geometry.h"
+#include "rasterizer/temporal_antialias.h"
 #include "rasterizer/view_uniforms.h"
 
 namespace plumb {
@@ -38,6 +39,7 @@ struct Pipeline::Implementation {
           height(height_in),
           declarations(declare_passes(scene, method, quantities)),
           plan(plan_passes(declarations, planes_to_make(quantities))),
+          offsets(plan.read.contains(aliased_plane) ? jitter_offsets(method.antialias) : std::vector{glm::vec2(0.0f)}),
           planes(context, width + 2 * method.gbuffer.guard_band, height + 2 * method.gbuffer.guard_band),
           programs(context, gbuffer_defines(method)),
           view_uniforms(context),
@@ -64,18 +66,24 @@ struct Pipeline::Implementation {
                             height, view.width(), view.height()));
         }
         context.make_current();
-        const int guard_band = method.gbuffer.guard_band;
         const Moment& previous = request.previous ? *request.previous : request.now;
-        const View wide = view.with_guard_band(guard_band);
-        const View wide_previous = previous.view.with_guard_band(guard_band);
+        const bool continues = rendered_ == previous;
+        frame_number_ = continues ? frame_number_ + 1 : 0;
+        shown_ = with_jitter(view, frame_number_);
+        const View wide = shown_->with_guard_band(method.gbuffer.guard_band);
+        // After a cut the frame before was not rendered: let its pixels be where this frame's are.
+        const View wide_previous = with_jitter(previous.view, continues ? frame_number_ - 1 : frame_number_)
+                                       .with_guard_band(method.gbuffer.guard_band);
         // Who predicts the next frame must not be told it.
         const bool predicts = method.gbuffer.generation == LayerGeneration::predict;
         const Moment* next = request.next && !predicts ? &*request.next : nullptr;
-        const View wide_next = (next ? next->view : extrapolate(previous.view, view)).with_guard_band(guard_band);
-        view_uniforms.update(wide, wide_previous, guard_band, &wide_next);
+        const View wide_next = with_jitter(next ? next->view : extrapolate(previous.view, view), frame_number_ + 1)
+                                   .with_guard_band(method.gbuffer.guard_band);
+        view_uniforms.update(wide, wide_previous, method.gbuffer.guard_band, &wide_next, frame_number_);
         if (geometry) geometry->move_to(request.now, previous, next);
-        const PassFrame frame{wide,       wide_previous,         request.truth,
-                              &wide_next, rendered_ == previous, foretold_ == request.now};
+        // What was foretold was drawn with the offset of the frame that would follow.
+        const bool foretold = foretold_ == request.now && (continues || offsets.size() == 1);
+        const PassFrame frame{wide, wide_previous, request.truth, &wide_next, continues, foretold, frame_number_};
         // Whatever throws below leaves no history.
         rendered_.reset(), foretold_.reset();
         for (std::size_t i = 0; i < passes.size(); ++i) {
@@ -93,6 +101,9 @@ struct Pipeline::Implementation {
         }
     }
 
+    // The view of the last frame as it was rendered.
+    const View& shown() const { return *shown_; }
+
     std::vector<PassTiming> timings() const {
         std::vector<PassTiming> result;
         const std::vector<double> milliseconds = timer.milliseconds();
@@ -109,6 +120,7 @@ struct Pipeline::Implementation {
     const int width, height;
     const std::vector<PassDeclaration> declarations;
     const PassPlan plan;
+    const std::vector<glm::vec2> offsets;  // of the views of successive frames, repeating; pixels
     PlaneTextures planes;
     ProgramCache programs;
     ViewUniforms view_uniforms;
@@ -117,6 +129,12 @@ struct Pipeline::Implementation {
     PassTimer timer;
 
 private:
+    View with_jitter(const View& view, int frame) const {
+        return view.with_offset(view.offset() + offsets[static_cast<std::size_t>(frame) % offsets.size()]);
+    }
+
+    std::optional<View> shown_;
+    int frame_number_ = 0;            // since the last cut
     std::optional<Moment> rendered_;  // the frame before
     std::optional<Moment> foretold_;  // what it was told to come next
 };
@@ -149,8 +167,8 @@ RasterResult Pipeline::render(const FrameRequest& request) {
     for (const PassTiming& timing : result.timings) result.milliseconds += timing.milliseconds;
     result.frame = Frame(view.width(), view.height());
     for (const std::string& plane : self.quantities.planes) {
-        result.frame.set(
-            plane, read_plane(self.planes, plane, view, self.method.gbuffer.guard_band, normal_format_of(self.method)));
+        result.frame.set(plane, read_plane(self.planes, plane, self.shown(), self.method.gbuffer.guard_band,
+                                           normal_format_of(self.method)));
     }
     result.frame.facts["renderer"] = self.context.info().renderer;
     result.frame.facts["method"] = self.method.name;

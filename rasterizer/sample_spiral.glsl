@@ -1,4 +1,5 @@
 // The GLSL half of sample_spiral.h, which has the formulas and makes the block's contents and the defines.
+#include "view.glsl"
 
 layout(std140, binding = SPIRAL_BINDING) uniform SpiralBlock {
     vec4 tap_directions[SPIRAL_MAXIMUM_SAMPLES / 2];
@@ -8,7 +9,8 @@ layout(std140, binding = SPIRAL_BINDING) uniform SpiralBlock {
 // The rotation (cosine, sine) of all taps of a pixel; `jitter` is in 2^-16.
 vec2 spiral_spin(ivec2 pixel, uint jitter) {
     uvec2 p = uvec2(pixel);
-    uint turns = ((3u * p.x) ^ (p.y + p.x * p.y)) * SPIRAL_TURNS_PER_HASH + jitter * SPIRAL_TURNS_PER_JITTER;
+    uint turns = ((3u * p.x) ^ (p.y + p.x * p.y)) * SPIRAL_TURNS_PER_HASH + jitter * SPIRAL_TURNS_PER_JITTER +
+                 uint(frame_number) * SPIRAL_TURNS_PER_FRAME;
     uint index = turns >> (32 - SPIRAL_SPIN_BITS);
     vec4 pair = spin_directions[index >> 1];
     return (index & 1u) == 0u ? pair.xy : pair.zw;

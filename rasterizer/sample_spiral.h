@@ -10,10 +10,12 @@
 // does:
 //
 //     spin(x, y)   = 10 ((3 x) xor (y + x y)) radians, as the source
-//     turn of tap  = (i / N) tau  +  quantise(spin + jitter tau / N)
+//     turn of tap  = (i / N) tau  +  quantise(spin + jitter tau / N + frame 0.618...)
 //
-// quantise rounds down to 1/1024 turn. Pixels count from the bottom left, as OpenGL's do. sample_spiral.glsl is the
-// other half.
+// quantise rounds down to 1/1024 turn. The last term is there where taps vary in time: `frame` counts from the last
+// cut, and the golden ratio's fraction spreads the turns of any number of successive frames evenly (the source adds the
+// time in radians, which repeats nothing but depends on when a program was started). Pixels count from the bottom left,
+// as OpenGL's do. sample_spiral.glsl is the other half.
 #pragma once
 
 #include <array>
@@ -49,7 +51,7 @@ public:
     void bind() const { tables_.bind(GL_UNIFORM_BUFFER, binding); }
 
     // What sample_spiral.glsl needs to be compiled.
-    static ShaderDefines defines(int samples);
+    static ShaderDefines defines(int samples, bool varies_in_time = false);
 
 private:
     static constexpr GLuint binding = 1;  // the view's uniforms have 0

@@ -1,0 +1,79 @@
+// One frame of the temporal filter; temporal_filter.h has the formula.
+//
+// Defines: ALPHA, REJECT_FROM, REJECT_TO (metres), HARD_CUT (0, 1: the two are equal), LAYER (whose surfaces), LAYERS, MARGIN (pixels on each side
+// of which there is no history), WRITE_WEIGHT, and that of reprojection.glsl.
+#include "normal_encoding.glsl"
+#include "reprojection.glsl"
+
+layout(binding = 0) uniform sampler2DArray noisy;
+layout(binding = 1) uniform sampler2DArray depth_plane;
+layout(binding = 2) uniform sampler2DArray normal_plane;
+layout(binding = 3) uniform sampler2DArray previous_depth;
+layout(binding = 4) uniform sampler2DArray history;
+uniform bool has_history;
+
+layout(location = 0) out vec4 accumulated;
+#ifdef WRITE_WEIGHT
+layout(location = 1) out float history_weight;
+#endif
+
+// What is left of the weight at a distance in metres.
+float acceptance(float distance) {
+#if HARD_CUT
+    return distance <= REJECT_FROM ? 1.0 : 0.0;
+#else
+    return 1.0 - smoothstep(REJECT_FROM, REJECT_TO, distance);
+#endif
+}
+
+// Of the surface that a pixel of the frame before showed from the plane through `point` (previous camera space).
+float distance_from_plane(ivec2 pixel, vec3 point, vec3 normal) {
+    vec3 ray = previous_camera_space_point(vec2(pixel) + 0.5, 1.0);
+    float expected = dot(normal, point) / dot(normal, ray);
+    // Nearly edge-on the plane is met anywhere, or nowhere.
+    if (!(expected > -0.5 * point.z && expected < -2.0 * point.z)) expected = -point.z;
+    float difference = abs(texelFetch(previous_depth, ivec3(pixel, LAYER), 0).r - expected);
+#if LAYERS == 2
+    difference = min(difference, abs(texelFetch(previous_depth, ivec3(pixel, 1 - LAYER), 0).r - expected));
+#endif
+    return difference * length(ray);
+}
+
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    vec4 value = texelFetch(noisy, ivec3(pixel, LAYER), 0);
+    accumulated = value;
+#ifdef WRITE_WEIGHT
+    history_weight = 0.0;
+#endif
+    float depth = texelFetch(depth_plane, ivec3(pixel, LAYER), 0).r;
+    if (!has_history || is_background(depth)) return;
+    PreviousPlace place = previous_place(pixel, LAYER, depth);
+    // Far outside, coordinates would overflow as integers.
+    if (!place.in_front || any(lessThan(place.pixel, vec2(-1.0))) || any(greaterThan(place.pixel, view_size + 1.0))) {
+        return;
+    }
+    vec3 normal = camera_space_direction(normal_of_texel(texelFetch(normal_plane, ivec3(pixel, LAYER), 0)));
+    normal = mat3(previous_camera_from_camera) * normal;
+
+    vec2 corner = floor(place.pixel - 0.5);
+    vec2 fraction = place.pixel - 0.5 - corner;
+    vec4 difference = vec4(0.0);
+    float total = 0.0;
+    for (int i = 0; i < 4; ++i) {
+        ivec2 side = ivec2(i & 1, i >> 1);
+        ivec2 tap = ivec2(corner) + side;
+        vec2 share = mix(1.0 - fraction, fraction, vec2(side));
+        float weight = share.x * share.y;
+        bool is_kept = all(greaterThanEqual(tap, ivec2(MARGIN))) && all(lessThan(tap, ivec2(view_size) - MARGIN));
+        if (!is_kept || weight == 0.0) continue;
+        weight *= ALPHA * acceptance(distance_from_plane(tap, place.point, normal));
+        if (weight == 0.0) continue;
+        difference += weight * (texelFetch(history, ivec3(tap, LAYER), 0) - value);
+        total += weight;
+    }
+    accumulated = value + difference;
+#ifdef WRITE_WEIGHT
+    history_weight = total;
+#endif
+}

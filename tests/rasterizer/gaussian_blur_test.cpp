@@ -1,0 +1,101 @@
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "gaussian_blur_counterpart.h"
+#include "gl_test.h"
+#include "rasterizer/bilateral_blur.h"
+#include "screen_space_run.h"
+
+namespace plumb {
+namespace {
+
+using GaussianBlurTest = GlTest;
+PLUMBLINE_BOTH_BACKENDS(GaussianBlurTest);
+
+// Blurs an image that the test makes up.
+Image blur(GlContext& context, const counterpart::Layers& layers, const BilateralBlurSettings& settings,
+           const Image& image) {
+    const PassDeclaration blur =
+        declare_bilateral_blur({.name = "blur", .settings = settings, .input = "noisy", .output = "smooth"});
+    const PassDeclaration given = {
+        "given noise", {}, {"noisy"}, [&image](const PassResources& resources) -> std::unique_ptr<Pass> {
+            upload(resources.planes.create("noisy", image.channels() == 1 ? GL_R32F : GL_RGBA32F, 1), 0, image);
+            return nullptr;
+        }};
+    ScreenSpaceRun run(context, layers, {}, {.planes = {"smooth"}}, {given, blur});
+    return run.render("smooth", image.channels());
+}
+
+Image noise(int width, int height, int channels) {
+    std::mt19937 generator(5);
+    std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
+    Image image(width, height, channels);
+    for (float& value : image.values()) value = uniform(generator);
+    return image;
+}
+
+// Near and far planes between which the layers' depths of 2 to 3 m make differences of all sizes.
+View view_with_planes(int width, int height, float near_plane, float far_plane) {
+    Camera camera = slanted_view(width, height).camera();
+    camera.near_plane = near_plane, camera.far_plane = far_plane;
+    return View(camera, width, height);
+}
+
+TEST_P(GaussianBlurTest, AgreesWithItsCounterpart) {
+    for (const BlurKind kind : {BlurKind::gaussian_2015, BlurKind::gaussian_2015_listing}) {
+        for (const auto& [radius, step] : {std::pair{4, 1}, std::pair{9, 2}, std::pair{1, 1}}) {
+            for (const auto& [near_plane, far_plane] : {std::pair{0.1f, 200.0f}, std::pair{1.9f, 3.5f}}) {
+                const BilateralBlurSettings settings{.kind = kind, .radius = radius, .step = step};
+                const counterpart::Layers layers =
+                    counterpart::random_layers(view_with_planes(70, 50, near_plane, far_plane), 6);
+                const Image image = noise(70, 50, 4);
+                const Image actual = blur(context(), layers, settings, image);
+                const Image rows = counterpart::gaussian_blurred(layers, settings, image, 1, 0);
+                const Image expected = counterpart::gaussian_blurred(layers, settings, rows, 0, 1);
+                for (std::size_t i = 0; i < actual.values().size(); ++i) {
+                    // Sums of at most 19 values below 1 in float, twice: some 1e-6. Differences of depth are good to
+                    // 1e-7, so that their root is good to 3e-4 even where it should be 0.
+                    const float tolerance = kind == BlurKind::gaussian_2015_listing ? 5e-4f : 1e-5f;
+                    ASSERT_NEAR(actual.values()[i], expected.values()[i], tolerance)
+                        << "value " << i << ", radius " << radius << ", near " << near_plane;
+                }
+            }
+        }
+    }
+}
+
+TEST_P(GaussianBlurTest, LeavesConstantsAsTheyAreBitForBit) {
+    const counterpart::Layers layers = counterpart::random_layers(slanted_view(50, 40), 6);
+    for (const BlurKind kind : {BlurKind::gaussian_2015, BlurKind::gaussian_2015_listing}) {
+        const Image actual = blur(context(), layers, {.kind = kind, .radius = 6}, Image(50, 40, 1, 0.7231f));
+        for (const float value : actual.values()) ASSERT_EQ(value, 0.7231f);
+    }
+}
+
+// A board 2 m before a wall: in the thesis' own scene scale the weight across the edge is still nearly one.
+TEST_P(GaussianBlurTest, TheTextsKindBleedsAcrossEdgesThatTheListingsKindWeakensAndTheBilateralOneKeeps) {
+    const std::vector<Patch> board_before_wall = {{{-40.0f, -30.0f, -6.0f}, {80.0f, 0.0f, 0.0f}, {0.0f, 60.0f, 0.0f}},
+                                                  {{-1.0f, -1.0f, -4.0f}, {2.0f, 0.0f, 0.0f}, {0.0f, 2.0f, 0.0f}}};
+    const counterpart::Layers layers = layers_of_patches(slanted_view(60, 60), board_before_wall);
+    Image image(60, 60, 1);
+    for (int y = 0; y < 60; ++y) {
+        for (int x = 0; x < 60; ++x) image.at(x, y) = layers.depth[0].at(x, y) < 5.0f ? 1.0f : 0.0f;
+    }
+    const auto bled = [&](BlurKind kind) {
+        const Image actual = blur(context(), layers, {.kind = kind}, image);
+        double sum = 0.0;
+        for (int y = 0; y < 60; ++y) {
+            for (int x = 0; x < 60; ++x) sum += image.at(x, y) == 0.0f ? actual.at(x, y) : 0.0f;
+        }
+        return sum;
+    };
+    const double text = bled(BlurKind::gaussian_2015), listing = bled(BlurKind::gaussian_2015_listing);
+    // 0.1 m |1 / 4 m - 1 / 6 m| = 0.008 of the depth buffer's range: weights 0.99 and 0.91.
+    EXPECT_LT(listing, text);
+    EXPECT_GT(listing, 0.8 * text);
+    EXPECT_EQ(bled(BlurKind::bilateral), 0.0);
+}
+
+}  // namespace
+}  // namespace plumb

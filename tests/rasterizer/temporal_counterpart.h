@@ -1,0 +1,169 @@
+// Reprojection, the temporal filter and temporal anti-aliasing on the CPU, in double precision, from the formulas of
+// rasterizer/temporal_filter.h and rasterizer/temporal_antialias.h. Everything is taken from cameras, planes of frames
+// and the scene's own motions, in world space; nothing from what the passes compute on the way.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include <glm/glm.hpp>
+
+#include "frames/frame.h"
+#include "rasterizer/method.h"
+#include "rasterizer/moment.h"
+
+namespace plumb::counterpart {
+
+// Continuous pixel coordinates (from the top left, with the view's offset) and depth of a world point.
+inline glm::dvec3 seen_at(const View& view, const glm::dvec3& world) {
+    const glm::dvec3 p(glm::inverse(glm::dmat4(view.camera().world_from_camera)) * glm::dvec4(world, 1.0));
+    const double tan_half_height = std::tan(0.5 * view.camera().vertical_fov);
+    const double pixels_per_metre = 0.5 * view.height() / tan_half_height;
+    return {0.5 * view.width() + pixels_per_metre * p.x / -p.z - view.offset().x,
+            0.5 * view.height() - pixels_per_metre * p.y / -p.z - view.offset().y, -p.z};
+}
+
+// The direction, not of unit length, through pixel coordinates: one metre along the camera's -Z.
+inline glm::dvec3 ray_through(const View& view, double x, double y) {
+    const double metres_per_pixel = std::tan(0.5 * view.camera().vertical_fov) / (0.5 * view.height());
+    const glm::dvec3 in_camera(metres_per_pixel * (x + view.offset().x - 0.5 * view.width()),
+                               metres_per_pixel * (0.5 * view.height() - y - view.offset().y), -1.0);
+    return glm::dmat3(view.camera().world_from_camera) * in_camera;
+}
+
+inline glm::dvec3 eye_of(const View& view) { return glm::dvec3(view.camera().position()); }
+
+// One frame, with the view that it was rendered with.
+struct RenderedFrame {
+    View view;
+    Frame planes;
+};
+
+inline glm::dvec3 vector_of(const Image& image, int x, int y) {
+    return {image.at(x, y, 0), image.at(x, y, 1), image.at(x, y, 2)};
+}
+
+// The surface point of a pixel, now and, with what the G-buffer says of its instance, in the frame before.
+struct SurfacePoint {
+    glm::dvec3 now, before;  // world space
+};
+
+// None where nothing is seen. `displacement` is in the camera space of now.
+inline std::optional<SurfacePoint> surface_point(const RenderedFrame& frame, int x, int y) {
+    const double depth = frame.planes.plane("depth").at(x, y);
+    if (std::isinf(depth)) return {};
+    SurfacePoint point;
+    point.now = eye_of(frame.view) + depth * ray_through(frame.view, x + 0.5, y + 0.5);
+    point.before = point.now;
+    if (frame.planes.has("displacement")) {
+        point.before +=
+            glm::dmat3(frame.view.camera().world_from_camera) * vector_of(frame.planes.plane("displacement"), x, y);
+    }
+    return point;
+}
+
+struct Accumulated {
+    double value = 0.0, weight = 0.0;
+};
+
+// What the filter makes of `this_frame` at a pixel, `history` being its result of the frame before.
+inline Accumulated accumulate(const RenderedFrame& now, const RenderedFrame& before, const Image& this_frame,
+                              const Image& history, const TemporalFilterSettings& settings, int x, int y) {
+    Accumulated result{this_frame.at(x, y), 0.0};
+    const std::optional<SurfacePoint> point = surface_point(now, x, y);
+    if (!point) return result;
+    const glm::dvec3 place = seen_at(before.view, point->before);
+    if (place.z <= 0.0) return result;
+    const glm::dvec3 normal = vector_of(now.planes.plane("normal"), x, y);
+    const glm::dvec3 from_eye = point->before - eye_of(before.view);
+    const double left = std::floor(place.x - 0.5), top = std::floor(place.y - 0.5);
+    for (const double column : {left, left + 1.0}) {
+        for (const double row : {top, top + 1.0}) {
+            if (column < 0 || row < 0 || column >= this_frame.width() || row >= this_frame.height()) continue;
+            const double share = (1.0 - std::abs(place.x - 0.5 - column)) * (1.0 - std::abs(place.y - 0.5 - row));
+            const glm::dvec3 ray = ray_through(before.view, column + 0.5, row + 0.5);
+            double expected = glm::dot(normal, from_eye) / glm::dot(normal, ray);
+            if (!(expected > 0.5 * place.z && expected < 2.0 * place.z)) expected = place.z;
+            double distance = std::numeric_limits<double>::infinity();
+            for (int layer = 0; layer < settings.layers; ++layer) {
+                const double depth = before.planes.plane(layer == 0 ? "depth" : "layer2.depth")
+                                         .at(static_cast<int>(column), static_cast<int>(row));
+                distance = std::min(distance, std::abs(depth - expected) * glm::length(ray));
+            }
+            const double t =
+                std::clamp((distance - settings.reject_from) / (settings.reject_to - settings.reject_from), 0.0, 1.0);
+            const double weight = settings.alpha * share * (1.0 - t * t * (3.0 - 2.0 * t));
+            if (weight == 0.0) continue;
+            result.value +=
+                weight * (history.at(static_cast<int>(column), static_cast<int>(row)) - this_frame.at(x, y));
+            result.weight += weight;
+        }
+    }
+    return result;
+}
+
+// An image that temporal anti-aliasing has resolved, and over how many frames each pixel is averaged.
+struct Resolved {
+    Image colour, frames;
+};
+
+inline glm::dvec3 bilinear(const Image& image, const glm::dvec2& place) {
+    const double left = std::floor(place.x - 0.5), top = std::floor(place.y - 0.5);
+    glm::dvec3 sum(0.0);
+    for (const double column : {left, left + 1.0}) {
+        for (const double row : {top, top + 1.0}) {
+            const double share = (1.0 - std::abs(place.x - 0.5 - column)) * (1.0 - std::abs(place.y - 0.5 - row));
+            const int x = static_cast<int>(std::clamp(column, 0.0, image.width() - 1.0));
+            const int y = static_cast<int>(std::clamp(row, 0.0, image.height() - 1.0));
+            for (int c = 0; c < image.channels(); ++c) sum[c] += share * image.at(x, y, c);
+        }
+    }
+    return sum;
+}
+
+// Resolves a frame; `before` and `history` are null on the first. Looks history up bilinearly.
+inline Resolved resolve(const RenderedFrame& now, const RenderedFrame* before, const Resolved* history,
+                        const AntialiasSettings& settings) {
+    const Image &aliased = now.planes.plane("total.aliased"), &depth = now.planes.plane("depth");
+    const int width = aliased.width(), height = aliased.height();
+    Resolved result{aliased, Image(width, height, 1, 1.0f)};
+    if (!before) return result;
+    for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < width; ++x) {
+            glm::ivec2 surface(x, y);
+            const glm::dvec3 colour = vector_of(aliased, x, y);
+            glm::dvec3 least = colour, greatest = colour;
+            for (int dy = 1; dy >= -1; --dy) {
+                for (int dx = -1; dx <= 1; ++dx) {
+                    const glm::ivec2 p =
+                        glm::clamp(glm::ivec2(x + dx, y + dy), glm::ivec2(0), glm::ivec2(width, height) - 1);
+                    least = glm::min(least, vector_of(aliased, p.x, p.y));
+                    greatest = glm::max(greatest, vector_of(aliased, p.x, p.y));
+                    if (settings.dilate && depth.at(p.x, p.y) < depth.at(surface.x, surface.y)) surface = p;
+                }
+            }
+            const std::optional<SurfacePoint> point = surface_point(now, surface.x, surface.y);
+            // The background is seen in the same direction; a kilometre and more beyond the eye stands for it.
+            const glm::dvec3 direction = ray_through(now.view, surface.x + 0.5, surface.y + 0.5);
+            const glm::dvec3 world = point ? point->before : eye_of(before->view) + 1e6 * direction;
+            const glm::dvec3 seen = seen_at(before->view, world);
+            if (seen.z <= 0.0) continue;
+            const glm::dvec2 then = glm::dvec2(seen) + glm::dvec2(before->view.offset());
+            const glm::dvec2 here = glm::dvec2(surface) + 0.5 + glm::dvec2(now.view.offset());
+            const glm::dvec2 place = glm::dvec2(x, y) + 0.5 + then - here;
+            if (place.x < 0.0 || place.y < 0.0 || place.x > width || place.y > height) continue;
+            glm::dvec3 kept = bilinear(history->colour, place);
+            if (settings.clamp) kept = glm::clamp(kept, least, greatest);
+            const double frames = bilinear(history->frames, place).x + 1.0;
+            const double share = std::max(1.0 - static_cast<double>(settings.alpha), 1.0 / frames);
+            for (int c = 0; c < 3; ++c)
+                result.colour.at(x, y, c) = static_cast<float>(kept[c] + share * (colour[c] - kept[c]));
+            result.frames.at(x, y) = static_cast<float>(frames);
+        }
+    }
+    return result;
+}
+
+}  // namespace plumb::counterpart

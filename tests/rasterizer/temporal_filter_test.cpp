@@ -1,0 +1,329 @@
+#include "rasterizer/temporal_filter.h"
+
+#include <algorithm>
+#include <random>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include "gl_test.h"
+#include "rasterizer/gbuffer_planes.h"
+#include "rasterizer/gl_error.h"
+#include "rasterizer/normal_encoding.h"
+#include "rasterizer/pass_plan.h"
+#include "rasterizer/texture_transfer.h"
+#include "rasterizer/view_uniforms.h"
+#include "temporal_walk.h"
+
+namespace plumb {
+namespace {
+
+using testing::HasSubstr;
+using TemporalFilterTest = GlTest;
+PLUMBLINE_BOTH_BACKENDS(TemporalFilterTest);
+
+constexpr int width = 120, height = 90;
+
+Method method_with(const TemporalFilterSettings& settings) {
+    Method method = with_small_shadows({});
+    method.gbuffer.minimum_separation = 0.05f;
+    method.ao.temporal = settings;
+    return method;
+}
+
+const std::vector<std::string> planes_of_filter{
+    "ao", "ao.of_frame", "ao.history_weight", "depth", "layer2.depth", "displacement", "normal"};
+
+bool same_bits(const Image& a, const Image& b) { return std::ranges::equal(a.values(), b.values()); }
+
+// The filter on planes that the test makes up: a wall across the view, before which nothing moves.
+class FilterRun {
+public:
+    FilterRun(GlContext& context, const View& view, const TemporalFilterSettings& settings)
+        : view_(view),
+          planes_(context, view.width(), view.height()),
+          programs_(context),
+          view_uniforms_(context),
+          context_(context) {
+        const glm::vec2 normal = encode_normal(glm::vec3(view.camera().world_from_camera[2]));  // towards the camera
+        Image normals(view.width(), view.height(), 2, normal.x);
+        for (std::size_t i = 1; i < normals.values().size(); i += 2) normals.values()[i] = normal.y;
+        for (const std::string plane : {"depth", "previous_depth"})
+            upload(planes_.create(plane, GL_R32F, 1), 0, Image(view.width(), view.height(), 1, 5.0f));
+        upload(planes_.create("normal", GL_RG16, 1), 0, normals);
+        planes_.create("noisy", GL_R32F, 1);
+        const PassResources resources{context, scene_, method_, quantities_, planes_, programs_, read_, {}};
+        const TemporalFilterRequest request{
+            .name = "filter", .group = "filter", .settings = settings, .input = "noisy", .output = "smooth"};
+        pass_ = std::make_unique<TemporalFilterPass>(resources, request);
+    }
+
+    Image next(const Image& noisy) {
+        upload(planes_.get("noisy"), 0, noisy);
+        context_.make_current();
+        view_uniforms_.update(view_, view_, 0, nullptr, frame_);
+        view_uniforms_.bind();
+        pass_->execute({view_, view_, nullptr, nullptr, frame_ > 0, false, frame_});
+        ++frame_;
+        return read_back(planes_.get("smooth"), 0, 1);
+    }
+
+private:
+    View view_;
+    Scene scene_;
+    Method method_;
+    Quantities quantities_;
+    PlaneTextures planes_;
+    ProgramCache programs_;
+    ViewUniforms view_uniforms_;
+    std::set<std::string, std::less<>> read_;
+    std::unique_ptr<Pass> pass_;
+    GlContext& context_;
+    int frame_ = 0;
+};
+
+View slanted_view(int size) {
+    return View(Camera::look_at("slanted", {1.0f, 2.0f, 3.0f}, {-2.0f, 0.5f, 1.0f}, 0.9f), size, size);
+}
+
+double variance(const std::vector<double>& values) {
+    double sum = 0.0, squares = 0.0;
+    for (const double value : values) sum += value;
+    const double mean = sum / static_cast<double>(values.size());
+    for (const double value : values) squares += (value - mean) * (value - mean);
+    return squares / static_cast<double>(values.size() - 1);
+}
+
+TEST_P(TemporalFilterTest, VarianceOfIndependentNoiseFallsToTheGeometricSumOfSquares) {
+    for (const float alpha : {0.5f, 0.85f, 0.95f}) {
+        const View view = slanted_view(64);
+        FilterRun run(context(), view, {.alpha = alpha});
+        std::mt19937 generator(3);
+        std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
+        // After k frames the first one still has alpha^k: 1e-3 of it is left.
+        const int settling = static_cast<int>(std::ceil(std::log(1e-3) / std::log(alpha)));
+        std::vector<double> noisy, smooth;
+        Image noise(64, 64, 1);
+        for (int frame = 0; frame < settling + 60; ++frame) {
+            for (float& value : noise.values()) value = uniform(generator);
+            const Image result = run.next(noise);
+            if (frame < settling || frame % 20 != 0) continue;
+            for (const float value : noise.values()) noisy.push_back(value);
+            for (const float value : result.values()) smooth.push_back(value);
+        }
+        const double expected = (1.0 - alpha) / (1.0 + alpha);
+        // 3 frames of 4096 pixels: a variance is good to sqrt(2 / 12288) = 1.3 %, but for what is left of one frame in
+        // another 20 later (0.36 at alpha = 0.95, in the mean and not across pixels); three of those and the bilinear
+        // shares, which are 1e-4 off.
+        EXPECT_NEAR(variance(smooth) / variance(noisy), expected, 0.05 * expected) << "alpha " << alpha;
+    }
+}
+
+TEST_P(TemporalFilterTest, AgreesWithItsCounterpartWhileCameraAndObjectsMove) {
+    for (const TemporalFilterSettings& settings :
+         {TemporalFilterSettings{.alpha = 0.85f}, TemporalFilterSettings{.alpha = 0.95f, .layers = 2},
+          TemporalFilterSettings{.alpha = 0.5f, .reject_from = 0.0f, .reject_to = 0.5f}}) {
+        const TemporalWalk walk(width, height);
+        Pipeline pipeline(context(), walk.scene, method_with(settings), {.planes = planes_of_filter}, width, height);
+        std::optional<counterpart::RenderedFrame> before;
+        for (int i = 0; i < 4; ++i) {
+            const FrameRequest request = walk.frame(i);
+            counterpart::RenderedFrame now{request.now.view, pipeline.render(request).frame};
+            const Image &result = now.planes.plane("ao"), &weight = now.planes.plane("ao.history_weight");
+            const Image& of_frame = now.planes.plane("ao.of_frame");
+            int with_history = 0, wrong = 0;
+            for (int y = 0; y < height; ++y) {
+                for (int x = 0; x < width; ++x) {
+                    counterpart::Accumulated expected{of_frame.at(x, y), 0.0};
+                    if (before)
+                        expected = accumulate(now, *before, of_frame, before->planes.plane("ao"), settings, x, y);
+                    with_history += weight.at(x, y) > 0.0f;
+                    if (i == 0) {
+                        ASSERT_EQ(result.at(x, y), of_frame.at(x, y)) << x << ", " << y;
+                    }
+                    // Depth in float is good to 1e-6 m here and normals to 1e-4 through their 16 bits; the distance,
+                    // over planes seen at up to 85 degrees, to 1e-4 m, times the slope 1.5 / 0.02 m of the acceptance.
+                    wrong += !(std::abs(result.at(x, y) - expected.value) < 0.01) ||
+                             !(std::abs(weight.at(x, y) - expected.weight) < 0.02);
+                }
+            }
+            // Nearly edge-on, normals decide by their last bit on which side of 0.5 and 2 depths the plane is met.
+            EXPECT_LE(wrong, width * height / 1000) << "frame " << i;
+            if (i == 0) {
+                EXPECT_EQ(with_history, 0);
+            } else {
+                EXPECT_GT(with_history, width * height / 2) << "frame " << i;
+            }
+            before = std::move(now);
+        }
+    }
+}
+
+TEST_P(TemporalFilterTest, AfterACutTheFrameIsThatOfAFreshPipelineBitForBit) {
+    const TemporalWalk walk(width, height);
+    Method method = method_with({.alpha = 0.9f});
+    method.radiosity.temporal.alpha = 0.9f;
+    const Quantities quantities{.planes = {"ao", "irradiance"}};
+    Pipeline pipeline(context(), walk.scene, method, quantities, width, height);
+    for (int i = 0; i < 3; ++i) pipeline.render(walk.frame(i));
+    for (const FrameRequest& cut : {walk.frame(20), FrameRequest{.now = walk.at(5)}}) {
+        Pipeline fresh(context(), walk.scene, method, quantities, width, height);
+        const Frame after = pipeline.render(cut).frame, first = fresh.render(cut).frame;
+        for (const std::string& plane : quantities.planes)
+            EXPECT_TRUE(same_bits(after.plane(plane), first.plane(plane))) << plane;
+    }
+}
+
+TEST_P(TemporalFilterTest, TapsVaryFromFrameToFrameAndRepeatAfterACut) {
+    const Scene scene = make_clutter();
+    const View view(scene.cameras[0], width, height), other(scene.cameras[1], width, height);
+    const Quantities quantities{.planes = {"ao.of_frame"}};
+    const auto frames = [&](Pipeline& pipeline) {
+        std::vector<Image> images;
+        for (int i = 0; i < 3; ++i) images.push_back(pipeline.render(view).frame.plane("ao.of_frame"));
+        return images;
+    };
+    for (const bool vary : {true, false}) {
+        Method method = method_with({.alpha = 0.85f, .vary_taps = vary});
+        // Noise as it is.
+        method.ao.blur.radius = 0;
+        Pipeline pipeline(context(), scene, method, quantities, width, height);
+        const std::vector<Image> first = frames(pipeline);
+        pipeline.render(other);
+        const std::vector<Image> again = frames(pipeline);
+        EXPECT_EQ(same_bits(first[0], first[1]), !vary);
+        EXPECT_EQ(same_bits(first[1], first[2]), !vary);
+        for (int i = 0; i < 3; ++i) EXPECT_TRUE(same_bits(first[i], again[i])) << "frame " << i;
+    }
+    // The first frame is that of a method without a filter.
+    Method plain = method_with({});
+    plain.ao.blur.radius = 0;
+    Method varying = method_with({.alpha = 0.85f});
+    varying.ao.blur.radius = 0;
+    const Image unfiltered =
+        Pipeline(context(), scene, plain, {.planes = {"ao"}}, width, height).render(view).frame.plane("ao");
+    EXPECT_TRUE(same_bits(
+        unfiltered,
+        Pipeline(context(), scene, varying, {.planes = {"ao"}}, width, height).render(view).frame.plane("ao")));
+}
+
+// Turns by the golden ratio are spread more evenly than independent ones, so that the variance falls further.
+TEST_P(TemporalFilterTest, InAStillViewTheVarianceOfAoFallsAtLeastAsForIndependentFrames) {
+    const Scene scene = make_clutter();
+    const View view(scene.cameras[0], width, height);
+    Method method = method_with({.alpha = 0.85f});
+    method.ao.blur.radius = 0;
+    Pipeline pipeline(context(), scene, method, {.planes = {"ao", "ao.of_frame"}}, width, height);
+    constexpr int settling = 43, counted = 30;  // 0.85^43 = 1e-3
+    std::vector<std::vector<double>> noisy(width * height), smooth(width * height);
+    for (int i = 0; i < settling + counted; ++i) {
+        const Frame frame = pipeline.render(view).frame;
+        if (i < settling) continue;
+        for (std::size_t pixel = 0; pixel < noisy.size(); ++pixel) {
+            noisy[pixel].push_back(frame.plane("ao.of_frame").pixel(pixel % width, pixel / width)[0]);
+            smooth[pixel].push_back(frame.plane("ao").values()[pixel]);
+        }
+    }
+    double of_noisy = 0.0, of_smooth = 0.0;
+    for (std::size_t pixel = 0; pixel < noisy.size(); ++pixel)
+        of_noisy += variance(noisy[pixel]), of_smooth += variance(smooth[pixel]);
+    const double ratio = of_smooth / of_noisy, independent = 0.15 / 1.85;
+    fmt::print("variance over time falls to {:.4f}; of independent frames to {:.4f}\n", ratio, independent);
+    RecordProperty("ratio", fmt::format("{:.4f}", ratio));
+    EXPECT_GT(of_noisy, 0.0);
+    // 10 000 pixels with some 3 independent values each: good to 1 %.
+    EXPECT_LT(ratio, 1.05 * independent);
+}
+
+// What moves is found again: the pixels that show the turning object, but for its outline and what has just come to
+// light.
+TEST_P(TemporalFilterTest, MovingObjectsKeepTheirHistoryHoweverTheLayersAreGenerated) {
+    for (const LayerGeneration generation : {LayerGeneration::peel, LayerGeneration::delay, LayerGeneration::previous,
+                                             LayerGeneration::predict, LayerGeneration::reproject}) {
+        for (const int layers : {1, 2}) {
+            const TemporalWalk walk(width, height);
+            Method method = method_with({.alpha = 0.85f, .layers = layers});
+            method.gbuffer.generation = generation;
+            Pipeline pipeline(context(), walk.scene, method, {.planes = planes_of_filter}, width, height);
+            int on_object = 0, kept = 0;
+            for (int i = 0; i < 4; ++i) {
+                const Frame frame = pipeline.render(walk.frame(i)).frame;
+                if (i == 0) continue;
+                for (int y = 0; y < height; ++y) {
+                    for (int x = 0; x < width; ++x) {
+                        const glm::dvec3 moved = counterpart::vector_of(frame.plane("displacement"), x, y);
+                        if (std::isinf(frame.plane("depth").at(x, y)) || glm::length(moved) < 1e-3) continue;
+                        ++on_object;
+                        kept += frame.plane("ao.history_weight").at(x, y) > 0.5f * 0.85f;
+                    }
+                }
+            }
+            const double share = static_cast<double>(kept) / on_object;
+            fmt::print("{}, {} layers: {:.3f} of {} pixels on moving objects keep their history\n",
+                       to_string(generation), layers, share, on_object);
+            EXPECT_GT(on_object, 300);
+            // The rest: outlines, one pixel wide in objects of some 30, and sides that turn into view.
+            EXPECT_GT(share, 0.75) << to_string(generation);
+        }
+    }
+}
+
+TEST_P(TemporalFilterTest, NothingIsAllocatedAfterTheFirstFrame) {
+    const TemporalWalk walk(width, height);
+    Method method = method_with({.alpha = 0.9f, .layers = 2});
+    method.radiosity.temporal.alpha = 0.9f;
+    Pipeline pipeline(context(), walk.scene, method, {.planes = {"ao", "irradiance"}}, width, height);
+    pipeline.time_passes(walk.frame(0));
+    const std::size_t bytes = context().allocated_bytes();
+    for (int i = 1; i < 4; ++i) pipeline.time_passes(walk.frame(i));
+    EXPECT_EQ(context().allocated_bytes(), bytes);
+}
+
+// The history reaches as far as the plane was made: to the image's border with a guard band that ao is not made in, and
+// as well where direct light reads it there.
+TEST_P(TemporalFilterTest, AGuardBandChangesNothingInAStillView) {
+    const Scene scene = make_clutter();
+    const View view(scene.cameras[0], width, height);
+    for (const bool whole : {false, true}) {
+        Method banded = method_with({.alpha = 0.85f});
+        banded.gbuffer.guard_band = 20;
+        Pipeline pipeline(context(), scene, banded,
+                          {.planes = whole ? std::vector<std::string>{"ao.history_weight", "direct", "ao"}
+                                           : std::vector<std::string>{"ao.history_weight", "ao"}},
+                          width, height);
+        pipeline.render(view);
+        const Frame frame = pipeline.render(view).frame;
+        for (int y = 0; y < height; ++y) {
+            for (int x = 0; x < width; ++x) {
+                const float weight = frame.plane("ao.history_weight").at(x, y);
+                // Background has none. 1e-3: rounding of the place between pixels.
+                if (weight != 0.0f) {
+                    ASSERT_NEAR(weight, 0.85f, 1e-3f) << x << ", " << y;
+                }
+            }
+        }
+    }
+}
+
+TEST_P(TemporalFilterTest, ParametersOutOfRangeAreRefused) {
+    const Scene scene = make_cornell();
+    const auto message = [&](const Method& method, const std::string& plane = "ao") -> std::string {
+        try {
+            Pipeline(context(), scene, method, {.planes = {plane}}, 32, 32);
+        } catch (const MethodError& error) {
+            return error.what();
+        }
+        return "no error";
+    };
+    EXPECT_THAT(message(method_with({.alpha = 1.0f})), HasSubstr("ao.temporal.alpha is 1"));
+    EXPECT_THAT(message(method_with({.alpha = 0.5f, .reject_from = 0.1f, .reject_to = 0.05f})),
+                HasSubstr("ao.temporal.reject_from is 0.1"));
+    EXPECT_THAT(message(method_with({.alpha = 0.5f, .layers = 3})), HasSubstr("ao.temporal.layers is 3"));
+    EXPECT_THAT(message(method_with({}), "ao.history_weight"), HasSubstr("ao.temporal.alpha is 0"));
+    Method one_layer = method_with({.alpha = 0.5f, .layers = 2});
+    one_layer.gbuffer.layers = 1, one_layer.ao.layers = 1;
+    EXPECT_THAT(message(one_layer), HasSubstr("gbuffer.layers is 1"));
+}
+
+}  // namespace
+}  // namespace plumb
