@@ -9,10 +9,9 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include "frames/image_error.h"
+#include "frames/parallel.h"
 #include "metrics/shape.h"
 
 namespace plumb {
@@ -140,10 +139,12 @@ void for_each_row(const Image& test, const Image& reference, double data_range,
                   const std::function<void(int, int, std::span<const double>)>& use) {
     for (int c = 0; c < test.channels(); ++c) {
         const Channel v(test, c), r(reference, c);
-        tbb::parallel_for(tbb::blocked_range<int>(0, test.height(), 16), [&](const tbb::blocked_range<int>& rows) {
+        constexpr int rows_at_once = 16;  // whose filter starts anew
+        parallel_for((test.height() + rows_at_once - 1) / rows_at_once, [&](int block) {
             RowFilter filter(test.width(), data_range);
             std::vector<double> row(static_cast<std::size_t>(test.width()));
-            for (int y = rows.begin(); y < rows.end(); ++y) {
+            const int end = std::min(test.height(), (block + 1) * rows_at_once);
+            for (int y = block * rows_at_once; y < end; ++y) {
                 filter.run(v, r, y, row);
                 use(c, y, row);
             }

@@ -4,7 +4,8 @@
 #include <cmath>
 
 #include <glm/gtc/constants.hpp>
-#include <tbb/parallel_for.h>
+
+#include "frames/parallel.h"
 
 namespace plumb {
 namespace {
@@ -143,7 +144,7 @@ void Accumulation::write(const StochasticPlane& plane, int samples, const ExactP
     Image& half_a = frame.set("half_a." + plane.name, Image(width_, height_, channels));
     Image& half_b = frame.set("half_b." + plane.name, Image(width_, height_, channels));
     Image& variance = frame.set("variance." + plane.name, Image(width_, height_, channels));
-    tbb::parallel_for(0, height_, [&](int y) {
+    parallel_for(height_, [&](int y) {
         for (int x = 0; x < width_; ++x) {
             const std::size_t pixel =
                 static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
@@ -164,7 +165,7 @@ double Accumulation::relative_error(const StochasticPlane& plane, int samples, c
         double variance = 0.0, square = 0.0;
     };
     std::vector<Row> rows(static_cast<std::size_t>(height_));
-    tbb::parallel_for(0, height_, [&](int y) {
+    parallel_for(height_, [&](int y) {
         Row& row = rows[static_cast<std::size_t>(y)];
         for (int x = 0; x < width_; ++x) {
             const std::size_t pixel =

@@ -130,6 +130,7 @@ struct RenderCase {
     int bounces = 1;
     bool antialias = false;
     Falloff falloff = Falloff::quadratic;
+    int roulette_after = 0;  // as ReferenceSettings
 };
 
 // A scene with all that is made of it once.
@@ -144,7 +145,7 @@ struct BenchmarkScene {
         settings.quantities.ao_falloff = asked.falloff;
         settings.antialias = asked.antialias;
         settings.samples = samples;
-        settings.roulette_after = 0;
+        settings.roulette_after = asked.roulette_after;
         return settings;
     }
 
@@ -205,13 +206,17 @@ void add_benchmarks(const std::string& name) {
     if (folder) folders.emplace_back(folder);
     const auto with = std::make_shared<BenchmarkScene>(load_scene(name, folders));
     const RenderCase paths{"paths, 8 bounces, anti-aliased", {"total"}, 8, true};
+    // What production path tracers do by default: rays per sample fall, samples per second rise.
+    const RenderCase roulette{
+        "paths, 8 bounces, anti-aliased, roulette after 1", {"total"}, 8, true, Falloff::quadratic, 1};
     const RenderCase visibility{"ao, hard", {"ao"}, 1, false, Falloff::hard};
     const std::vector<RenderCase> cases = {visibility,
                                            {"ao, quadratic", {"ao"}},
                                            {"direct", {"direct"}},
                                            {"indirect.1", {"indirect.1"}},
                                            {"ao, direct, indirect of 3 bounces", {"ao", "direct", "indirect"}, 3},
-                                           paths};
+                                           paths,
+                                           roulette};
     for (const RenderCase& asked : cases) {
         benchmark::RegisterBenchmark(fmt::format("render/{}/{}", name, asked.name).c_str(), render, with, asked)
             ->Unit(benchmark::kMillisecond)

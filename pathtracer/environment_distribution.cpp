@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include <glm/gtc/constants.hpp>
-#include <tbb/parallel_for.h>
 
+#include "frames/parallel.h"
 #include "pathtracer/luminance.h"
 
 namespace plumb {
@@ -18,7 +18,7 @@ EnvironmentDistribution::EnvironmentDistribution(const Scene& scene) {
 
     columns_.resize(height_);
     std::vector<double> row_weights(height_);
-    tbb::parallel_for(0, height_, [&](int row) {
+    parallel_for(height_, [&](int row) {
         const float sin_theta =
             std::sin(glm::pi<float>() * (static_cast<float>(row) + 0.5f) / static_cast<float>(height_));
         std::vector<double> weights(width_);

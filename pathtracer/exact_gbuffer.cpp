@@ -7,8 +7,8 @@
 #include <functional>
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
+#include "frames/parallel.h"
 #include "pathtracer/reference_error.h"
 
 namespace plumb {
@@ -27,7 +27,7 @@ std::size_t pixel_index(const View& view, int x, int y) {
 template <typename Nearest>
 std::vector<SurfaceHit> trace_layer(const TracedScene& scene, const View& view, const Nearest& nearest) {
     std::vector<SurfaceHit> hits(static_cast<std::size_t>(view.width()) * static_cast<std::size_t>(view.height()));
-    tbb::parallel_for(0, view.height(), [&](int y) {
+    parallel_for(view.height(), [&](int y) {
         for (int x = 0; x < view.width(); ++x) {
             const Ray ray = centre_ray(view, x, y);
             const float scale = depth_per_distance(view, ray.direction);
@@ -153,7 +153,7 @@ void write_gbuffer_plane(const TracedScene& scene, const View& view, const View*
     Image& image = frame.set(plane, Image(view.width(), view.height(), found->channels));
     const bool first = layer_of(plane) == 1;
     const PreviousFrame previous{previous_view ? *previous_view : view, !previous_view && !scene.anything_moves()};
-    tbb::parallel_for(0, view.height(), [&](int y) {
+    parallel_for(view.height(), [&](int y) {
         for (int x = 0; x < view.width(); ++x) {
             const Ray ray = centre_ray(view, x, y);
             const SurfaceHit& hit = hits[pixel_index(view, x, y)];

@@ -3,8 +3,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include <tbb/parallel_for.h>
-
+#include "frames/parallel.h"
 #include "pathtracer/exact_gbuffer.h"
 #include "pathtracer/traced_scene.h"
 
@@ -17,7 +16,7 @@ OracleLayers::OracleLayers(const TracedScene& scene, const View& view, int layer
     std::vector<SurfaceHit> hits;
     for (int layer = 0; layer < layers; ++layer) {
         hits = layer == 0 ? first_layer(scene, view) : next_layer(scene, view, hits, minimum_separation);
-        tbb::parallel_for(0, view.height(), [&](int y) {
+        parallel_for(view.height(), [&](int y) {
             for (int x = 0; x < view.width(); ++x) {
                 const std::size_t pixel =
                     static_cast<std::size_t>(y) * static_cast<std::size_t>(view.width()) + static_cast<std::size_t>(x);

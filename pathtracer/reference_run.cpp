@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
+#include "frames/parallel.h"
 #include "pathtracer/exact_gbuffer.h"
 #include "pathtracer/luminance.h"
 #include "pathtracer/reference_error.h"
@@ -95,7 +95,7 @@ void ReferenceRun::find_exact_parts() {
     exact_.emission.resize(hits_.size());
     if (plan_.estimation.direct) exact_.direct.resize(hits_.size());
     std::atomic<std::uint64_t> rays{hits_.size()};
-    tbb::parallel_for(0, view_.height(), [&](int y) {
+    parallel_for(view_.height(), [&](int y) {
         std::uint64_t row_rays = 0;
         VertexBatch start;
         for (int x = 0; x < view_.width(); ++x) {
@@ -232,7 +232,7 @@ void ReferenceRun::render_tile(int tile, int first_sample, int count, Scratch& s
 }
 
 void ReferenceRun::render_pass(int first_sample, int count) {
-    tbb::parallel_for(0, tiles_along(view_.width()) * tiles_along(view_.height()), [&](int tile) {
+    parallel_for(tiles_along(view_.width()) * tiles_along(view_.height()), [&](int tile) {
         std::unique_ptr<Scratch>& scratch = scratch_.local();
         if (!scratch) scratch = std::make_unique<Scratch>();
         render_tile(tile, first_sample, count, *scratch);
