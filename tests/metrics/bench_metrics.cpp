@@ -6,6 +6,7 @@
 #include <benchmark/benchmark.h>
 
 #include "metrics/comparison.h"
+#include "metrics/flip.h"
 
 namespace plumb {
 namespace {
@@ -40,6 +41,18 @@ void run_referenced_error(benchmark::State& state) {
     }
 }
 
+void run_ldr_flip(benchmark::State& state) {
+    for (auto _ : state) benchmark::DoNotOptimize(mean_flip(ldr_flip(test_image(), reference_image())));
+}
+// At two exposures; each further one costs half of this.
+void run_hdr_flip(benchmark::State& state) {
+    for (auto _ : state) {
+        benchmark::DoNotOptimize(mean_flip(hdr_flip(test_image(), reference_image(), {-1.0, 1.0, 2})));
+    }
+}
+
+BENCHMARK(run_ldr_flip)->Name("LDR-FLIP, 1920x1080x3")->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(run_hdr_flip)->Name("HDR-FLIP, 1920x1080x3")->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(run_ssim)->Name("ssim, 1920x1080x3")->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(run_pixel_errors)->Name("pixel errors, 1920x1080x3")->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(run_referenced_error)->Name("referenced error, 1920x1080x3")->Unit(benchmark::kMillisecond)->UseRealTime();
