@@ -151,9 +151,9 @@ enum class HistoryLookup { bilinear, catmull_rom };
 struct AntialiasSettings {
     bool temporal = false;
     int jitter_length = 8;  // frames until the offsets repeat
+    bool dilate = true;     // motion is that of the nearest surface among the neighbours: edges move as one
     float alpha = 0.9f;     // most weight of the frames before
     bool clamp = true;      // they are held within the colours of the neighbouring pixels
-    bool dilate = true;     // motion is that of the nearest surface among the neighbours: edges move as one
     HistoryLookup lookup = HistoryLookup::bilinear;
 };
 

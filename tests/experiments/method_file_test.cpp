@@ -61,6 +61,12 @@ TEST(MethodFile, AParameterWithoutEffectIsAnErrorThatSaysWhy) {
                 HasSubstr("gbuffer.layers = 1"));
     EXPECT_THAT(parse_failure("name = \"mine\"\nradiosity.blur.radius = 0\nradiosity.blur.step = 2"),
                 HasSubstr("radiosity.blur.radius = 0"));
+    EXPECT_THAT(parse_failure("name = \"mine\"\nao.blur.kind = \"gaussian_2015\"\nao.blur.plane_sharpness = 2.0"),
+                HasSubstr("ao.blur.kind is not \"bilateral\""));
+    EXPECT_THAT(parse_failure("name = \"mine\"\nao.temporal.layers = 2"), HasSubstr("ao.temporal.alpha = 0"));
+    EXPECT_THAT(parse_failure("name = \"mine\"\nradiosity.temporal.vary_taps = false"),
+                HasSubstr("radiosity.temporal.alpha = 0"));
+    EXPECT_THAT(parse_failure("name = \"mine\"\nantialias.clamp = false"), HasSubstr("antialias.temporal = false"));
 }
 
 TEST(MethodFile, MoreLayersThanTheGBufferHoldsIsAnError) {
@@ -78,6 +84,9 @@ Method method_where_it_matters(std::string_view name) {
     if (name == "gbuffer.layer_selection") method.gbuffer.generation = LayerGeneration::delay;
     if (name == "radiosity.blur.depth_key_bits") method.radiosity.blur.depth_sharpness = 10.0f;
     if (name == "environment.size") method.direct.environment = EnvironmentIrradiance::cube;
+    if (name.starts_with("ao.temporal.")) method.ao.temporal.alpha = 0.5f;
+    if (name.starts_with("radiosity.temporal.")) method.radiosity.temporal.alpha = 0.5f;
+    if (name.starts_with("antialias.")) method.antialias.temporal = true, method.antialias.alpha = 0.5f;
     return method;
 }
 
@@ -114,7 +123,8 @@ TEST(MethodFile, NoSettingIsMissingFromTheListOfParameters) {
     // Every setting takes 4 bytes (a truth value is padded to 4, as none follows another). Where this fails,
     // method_parameters() lacks a parameter that method.h has gained.
     const std::size_t settings = sizeof(GBufferSettings) + sizeof(DirectSettings) + sizeof(EnvironmentSettings) +
-                                 sizeof(ProbeSettings) + sizeof(AmbientObscuranceSettings) + sizeof(RadiositySettings);
+                                 sizeof(ProbeSettings) + sizeof(AmbientObscuranceSettings) + sizeof(RadiositySettings) +
+                                 sizeof(AntialiasSettings);
     EXPECT_EQ(4 * method_parameter_names().size(), settings);
 }
 
