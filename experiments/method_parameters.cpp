@@ -95,8 +95,14 @@ std::string gbuffer_reason(const Method& method, std::string_view name) {
     return "";
 }
 
+bool reads_ambient(const Method& method, AmbientSource source) {
+    return (method.radiosity.enabled && method.radiosity.fill == source) ||
+           (method.composite.kind == CompositeKind::demo && method.composite.fill == source);
+}
+
 // The same of the lights, the environment's cubes and the probe.
-std::string light_reason(const DirectSettings& direct, std::string_view name) {
+std::string light_reason(const Method& method, std::string_view name) {
+    const DirectSettings& direct = method.direct;
     if (name.starts_with("direct.volume_") && direct.local_lights == LocalLights::fullscreen) {
         return "direct.local_lights = \"fullscreen\"";
     }
@@ -105,9 +111,35 @@ std::string light_reason(const DirectSettings& direct, std::string_view name) {
     }
     if (name.starts_with("direct.shadow.emitter_") && !direct.emitters) return "direct.emitters = false";
     const bool cube = direct.source == SourceOfStage::method && direct.environment == EnvironmentIrradiance::cube;
-    if (name == "environment.size" && !cube) return "no stage reads the environment's cubes (direct.environment would)";
+    if (name == "environment.size" && !cube && !reads_ambient(method, AmbientSource::environment)) {
+        return "no stage reads the environment's cubes (direct.environment, radiosity.fill or composite.fill would)";
+    }
     if (name == "environment.samples") return "no stage reads glossy levels";
-    if (name.starts_with("probe.")) return "no stage reads the probe";
+    if (name.starts_with("probe.") && !reads_ambient(method, AmbientSource::probe)) {
+        return "no stage reads the probe (radiosity.fill or composite.fill would)";
+    }
+    return "";
+}
+
+// The same of what radiosity does with the light that it gathers, and of the composite.
+std::string bounce_reason(const Method& method, std::string_view name) {
+    const RadiositySettings& radiosity = method.radiosity;
+    const bool of_carrying =
+        name == "radiosity.damping" || name == "radiosity.carry_from" || name == "radiosity.carry_to";
+    if (of_carrying && !radiosity.carry) return "radiosity.carry = false";
+    if (name == "radiosity.bounces" && radiosity.carry) return "radiosity.carry = true makes one bounce a frame";
+    if (name == "radiosity.second_layer") {
+        if (radiosity.layers == 1) return "radiosity.layers = 1";
+        if (radiosity.bounces == 1 && !radiosity.carry) return "radiosity.bounces = 1 and radiosity.carry = false";
+    }
+    if (name == "radiosity.ambient" && radiosity.fill != AmbientSource::ambient) {
+        return "radiosity.fill is not \"ambient\"";
+    }
+    const bool physical = method.composite.kind == CompositeKind::physical;
+    if ((name == "composite.fill" || name == "composite.ambient") && physical) return "composite.kind = \"physical\"";
+    if (name == "composite.ambient" && method.composite.fill != AmbientSource::ambient) {
+        return "composite.fill is not \"ambient\"";
+    }
     return "";
 }
 
@@ -115,6 +147,7 @@ std::string light_reason(const DirectSettings& direct, std::string_view name) {
 
 std::vector<MethodParameter> method_parameters(Method& m) {
     const std::vector<std::string> sources = {"method", "truth"};
+    const std::vector<std::string> ambient_sources = {"none", "ambient", "environment", "probe"};
     std::vector<MethodParameter> parameters = {
         {"gbuffer.source", choice(m.gbuffer.source, sources)},
         {"gbuffer.layers", &m.gbuffer.layers, 1, 4},
@@ -168,15 +201,27 @@ std::vector<MethodParameter> method_parameters(Method& m) {
     parameters.insert(parameters.end(),
                       {
                           {"radiosity.enabled", &m.radiosity.enabled},
+                          {"radiosity.estimator", choice(m.radiosity.estimator, {"mara2016", "nielsen2015"})},
                           {"radiosity.samples", &m.radiosity.samples, 1, 1000},
                           {"radiosity.layers", &m.radiosity.layers, 1, 2},
                           {"radiosity.emitters_shine", &m.radiosity.emitters_shine},
                           {"radiosity.radius", &m.radiosity.radius, 1e-6, infinity},
+                          {"radiosity.spread_pixels", &m.radiosity.spread_pixels, 0, 4096},
                           {"radiosity.test_tap_normal", &m.radiosity.test_tap_normal},
                           {"radiosity.normalisation", choice(m.radiosity.normalisation, {"hits", "samples"})},
                           {"radiosity.use_mip_chain", &m.radiosity.use_mip_chain},
                           {"radiosity.mip_offset", &m.radiosity.mip_offset, 0, 16},
                           {"radiosity.minimum_mip_level", &m.radiosity.minimum_mip_level, 0, 5},
+                          {"radiosity.bounces", &m.radiosity.bounces, 1, most_bounces},
+                          {"radiosity.second_layer", choice(m.radiosity.second_layer, {"reuse", "gather", "none"})},
+                          {"radiosity.carry", &m.radiosity.carry},
+                          {"radiosity.damping", &m.radiosity.damping, 0, 1},
+                          {"radiosity.carry_from", &m.radiosity.carry_from, 0, 1e6},
+                          {"radiosity.carry_to", &m.radiosity.carry_to, 0, 1e6},
+                          {"radiosity.saturated_boost", &m.radiosity.saturated_boost, 0, 100},
+                          {"radiosity.unsaturated_boost", &m.radiosity.unsaturated_boost, 0, 100},
+                          {"radiosity.fill", choice(m.radiosity.fill, ambient_sources)},
+                          {"radiosity.ambient", &m.radiosity.ambient, 0, 1e6},
                       });
     add_blur(parameters, "radiosity.blur.", m.radiosity.blur);
     add_temporal(parameters, "radiosity.temporal.", m.radiosity.temporal);
@@ -189,6 +234,11 @@ std::vector<MethodParameter> method_parameters(Method& m) {
                           {"antialias.dilate", &m.antialias.dilate},
                           {"antialias.lookup", choice(m.antialias.lookup, {"bilinear", "catmull_rom"})},
                       });
+    parameters.insert(parameters.end(), {
+                                            {"composite.kind", choice(m.composite.kind, {"physical", "demo"})},
+                                            {"composite.fill", choice(m.composite.fill, ambient_sources)},
+                                            {"composite.ambient", &m.composite.ambient, 0, 1e6},
+                                        });
     return parameters;
 }
 
@@ -208,7 +258,7 @@ std::string reason_without_effect(const Method& method, std::string_view name) {
         return "direct.source = \"truth\"";
     }
     if (std::string reason = shadow_reason(method.direct.shadow, name); !reason.empty()) return reason;
-    if (std::string reason = light_reason(method.direct, name); !reason.empty()) return reason;
+    if (std::string reason = light_reason(method, name); !reason.empty()) return reason;
     if (std::string reason = blur_reason(method.ao.blur, "ao.blur.", name); !reason.empty()) return reason;
     if (std::string reason = blur_reason(method.radiosity.blur, "radiosity.blur.", name); !reason.empty())
         return reason;
@@ -217,6 +267,7 @@ std::string reason_without_effect(const Method& method, std::string_view name) {
     if (!method.radiosity.use_mip_chain && (name == "radiosity.mip_offset" || name == "radiosity.minimum_mip_level")) {
         return "radiosity.use_mip_chain = false";
     }
+    if (std::string reason = bounce_reason(method, name); !reason.empty()) return reason;
     return gbuffer_reason(method, name);
 }
 

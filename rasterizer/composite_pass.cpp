@@ -1,52 +1,104 @@
 #include "rasterizer/composite_pass.h"
 
 #include <array>
+#include <cmath>
 
+#include <fmt/format.h>
+
+#include "rasterizer/gl_error.h"
 #include "rasterizer/temporal_antialias.h"
 
 namespace plumb {
 namespace {
 
-bool has_emission(const Scene& scene) { return scene.has_emissive_surfaces() || !scene.environment.is_black(); }
+// A plane that is read, and what tells the shader of it.
+struct Term {
+    const char* plane;
+    const char* define;
+};
+constexpr std::array<Term, 8> terms = {{{"direct", "DIRECT"},
+                                        {"emission", "EMISSION"},
+                                        {"indirect", "INDIRECT"},
+                                        {"ao", "VISIBILITY"},
+                                        {"confidence", "CONFIDENCE"},
+                                        {"depth", "DEPTH"},
+                                        {"normal", "NORMAL"},
+                                        {"albedo", "ALBEDO"}}};
+constexpr GLuint ambient_unit = terms.size();
 
-ShaderDefines defines(const Scene& scene, const Method& method) {
+bool is_demo(const Method& method) { return method.composite.kind == CompositeKind::demo; }
+
+bool is_read(std::string_view plane, const Scene& scene, const Method& method) {
+    if (plane == "direct") return true;
+    if (plane == "emission") return scene.has_emissive_surfaces() || !scene.environment.is_black();
+    if (plane == "indirect") return method.radiosity.enabled;
+    if (plane == "ao" || plane == "confidence") return is_demo(method);
+    return is_demo(method) && method.composite.fill != AmbientSource::none;
+}
+
+ShaderDefines defines(const Scene& scene, const Method& method, const AmbientLight& ambient) {
     ShaderDefines result;
-    if (has_emission(scene)) result.emplace_back("EMISSION", "1");
-    if (method.radiosity.enabled) result.emplace_back("INDIRECT", "1");
+    for (std::size_t unit = 0; unit < terms.size(); ++unit) {
+        if (is_read(terms[unit].plane, scene, method)) result.emplace_back(terms[unit].define, std::to_string(unit));
+    }
+    if (is_demo(method)) result.emplace_back("DEMO", "1");
+    for (auto& define : ambient.defines()) result.push_back(std::move(define));
     return result;
+}
+
+AmbientSource ambient_source(const Method& method) {
+    return is_demo(method) ? method.composite.fill : AmbientSource::none;
+}
+
+void require_sound(const Method& method) {
+    if (!is_demo(method)) return;
+    const auto require = [&](bool condition, const std::string& problem) {
+        if (!condition)
+            throw MethodError(fmt::format("method '{}': composite.kind is \"demo\", {}", method.name, problem));
+    };
+    require(method.ao.enabled && method.radiosity.enabled,
+            "which weighs its terms by ambient visibility and the confidence of radiosity; set ao.enabled and "
+            "radiosity.enabled to true, or composite.kind to \"physical\"");
+    require(method.radiosity.fill == AmbientSource::none,
+            "which fills low confidence by itself; set composite.fill to what radiosity.fill is, and that to \"none\"");
+    require(
+        method.composite.ambient >= 0.0f && std::isfinite(method.composite.ambient),
+        fmt::format("and composite.ambient is {}; use a finite radiance of zero or more", method.composite.ambient));
 }
 
 }  // namespace
 
 CompositePass::CompositePass(const PassResources& resources)
-    : direct_(resources.planes.get("direct")),
-      draw_(resources.context, resources.programs, "composite.frag", defines(resources.scene, resources.method)) {
-    if (has_emission(resources.scene)) emission_ = &resources.planes.get("emission");
-    if (resources.method.radiosity.enabled) indirect_ = &resources.planes.get("indirect");
+    : ambient_(resources, ambient_source(resources.method), resources.method.composite.ambient, ambient_unit),
+      draw_(resources.context, resources.programs, "composite.frag",
+            defines(resources.scene, resources.method, ambient_)) {
+    for (const Term& term : terms) {
+        const bool read = is_read(term.plane, resources.scene, resources.method);
+        planes_.push_back(read ? &resources.planes.get(term.plane) : nullptr);
+    }
     const GlTexture& total = resources.planes.create(composited_plane(resources.method), GL_RGBA16F, 1);
     target_ = GlFramebuffer(resources.context, std::array{GlAttachment{&total}}, {}, "composite");
 }
 
 void CompositePass::execute(const PassFrame&) {
-    direct_.bind(0);
-    if (emission_) emission_->bind(1);
-    if (indirect_) indirect_->bind(2);
+    for (std::size_t unit = 0; unit < planes_.size(); ++unit) {
+        if (planes_[unit]) planes_[unit]->bind(static_cast<GLuint>(unit));
+    }
+    ambient_.bind();
     draw_.draw(target_);
 }
 
 PassDeclaration declare_composite(const Scene& scene, const Method& method) {
+    require_sound(method);
     PassDeclaration pass;
     pass.name = "composite";
-    pass.inputs = {"direct"};
-    pass.remark = "direct";
-    if (has_emission(scene)) {
-        pass.inputs.emplace_back("emission");
-        pass.remark += " + emission";
+    pass.remark = is_demo(method) ? "the demo's: " : "";
+    for (const Term& term : terms) {
+        if (!is_read(term.plane, scene, method)) continue;
+        pass.remark += pass.inputs.empty() ? term.plane : fmt::format(" + {}", term.plane);
+        pass.inputs.emplace_back(term.plane);
     }
-    if (method.radiosity.enabled) {
-        pass.inputs.emplace_back("indirect");
-        pass.remark += " + indirect";
-    }
+    for (std::string& plane : AmbientLight::inputs(ambient_source(method))) pass.inputs.push_back(std::move(plane));
     pass.outputs = {composited_plane(method)};
     pass.create = [](const PassResources& resources) { return std::make_unique<CompositePass>(resources); };
     return pass;

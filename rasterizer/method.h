@@ -126,20 +126,41 @@ struct AmbientObscuranceSettings {
     TemporalFilterSettings temporal = {};  // after the blur
 };
 
+// How taps are counted and layers added; each is named after its source (radiosity_gather.h has the formulas).
+enum class RadiosityEstimator { mara2016, nielsen2015 };
 // What the sum over the taps is divided by: the taps that hit (as the paper), or all of them.
 enum class RadiosityNormalisation { hits, samples };
+// Where the indirect light comes from that the second layer reflects: what the first layer receives at the same pixel,
+// a gather at the second layer's own points, or nowhere.
+enum class SecondLayerIndirect { reuse, gather, none };
+// What stands in for light that no tap finds: a constant radiance, or the irradiance of the environment or the probe.
+enum class AmbientSource { none, ambient, environment, probe };
+
+constexpr int most_bounces = 8;  // within a frame
 
 struct RadiositySettings {
     bool enabled = true;
+    RadiosityEstimator estimator = RadiosityEstimator::mara2016;
     int samples = 32;             // taps per pixel, 1..1000
     int layers = 2;               // 1 or 2, at most those of the G-buffer
     bool emitters_shine = false;  // taps also carry what their surface emits: see radiosity.h
     float radius = 1.0f;          // metres
+    int spread_pixels = 0;        // the taps spread over so many pixels; 0: over the radius as it projects
     bool test_tap_normal = true;  // taps must face the receiver
     RadiosityNormalisation normalisation = RadiosityNormalisation::hits;
     bool use_mip_chain = true;
     int mip_offset = 4;         // a tap r' pixels away reads level floor(log2 r') - mip_offset
     int minimum_mip_level = 0;  // 0..5; higher is faster and noisier
+    int bounces = 1;            // within a frame, 1..most_bounces
+    SecondLayerIndirect second_layer = SecondLayerIndirect::reuse;  // for later bounces
+    bool carry = false;              // one bounce a frame, on top of those of the frames before (radiosity_carry.h)
+    float damping = 0.0f;            // the fraction of what is carried on that is taken away, 0..1
+    float carry_from = 0.04f;        // metres between a point and where it is found again: from here on less
+    float carry_to = 0.06f;          // is carried on, and from here on nothing
+    float saturated_boost = 1.0f;    // factor of what is reflected of indirect light of pure colours; 1: energy stays
+    float unsaturated_boost = 1.0f;  // the same of greys
+    AmbientSource fill = AmbientSource::none;  // mixed in where few taps hit (radiosity_sum.h)
+    float ambient = 0.1f;                      // W / (m^2 sr), the constant radiance of fill = "ambient"
     BilateralBlurSettings blur = {.depth_sharpness = 0, .normal_sharpness = 40, .plane_sharpness = 0.5f};
     TemporalFilterSettings temporal = {};  // after the blur
 };
@@ -157,6 +178,15 @@ struct AntialiasSettings {
     HistoryLookup lookup = HistoryLookup::bilinear;
 };
 
+// How the terms become `total` (composite_pass.h): added, or as the demo of Mara et al. shows them.
+enum class CompositeKind { physical, demo };
+
+struct CompositeSettings {
+    CompositeKind kind = CompositeKind::physical;
+    AmbientSource fill = AmbientSource::none;  // where the ambient light of the demo's comes from
+    float ambient = 0.1f;                      // W / (m^2 sr), the constant radiance of fill = ambient
+};
+
 // Radius and falloff of ambient visibility are not here: they belong to the quantity that is asked for (Quantities).
 struct Method {
     std::string name = "default";
@@ -166,6 +196,7 @@ struct Method {
     ProbeSettings probe;
     AmbientObscuranceSettings ao;
     RadiositySettings radiosity;
+    CompositeSettings composite;
     AntialiasSettings antialias;
 };
 

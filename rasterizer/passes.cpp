@@ -109,7 +109,7 @@ std::vector<PassDeclaration> declare_passes(const Scene& scene, const Method& me
     passes.push_back(declare_true_direct(method));
     passes.push_back(declare_direct_light(scene, lights, method, 0));
     passes.push_back(declare_direct_light(scene, lights, method, 1));
-    add_all(declare_radiosity(method));
+    add_all(declare_radiosity(scene, method));
     passes.push_back(declare_composite(scene, method));
     passes.push_back(declare_temporal_antialias(scene, method));
     return passes;

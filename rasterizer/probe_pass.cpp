@@ -27,6 +27,7 @@ Method method_of_faces(const Method& method) {
     faces.gbuffer.layers = faces.ao.layers = 1;
     faces.direct.source = SourceOfStage::method;
     faces.radiosity.enabled = false;
+    faces.composite = {};
     return faces;
 }
 

@@ -1,79 +1,32 @@
-// Screen-space radiosity over one or two layers, one bounce.
+// Screen-space radiosity over one or two layers: diffuse light after one or several bounces.
 //
-// Gathers, per pixel, the irradiance E at X from the light that the visible layers reflect: N taps on a spiral in
-// screen space (sample_spiral.h). With Y a tap's point, w the unit vector from X to Y, n_X and n_Y the normals and B
-// the reflected diffuse radiance at Y (the plane `direct` of its layer), and g the falloff of the distance of X and Y
-// within `radius` (Quantities::indirect_falloff; hard: 1):
+// Each bounce k is a chain of passes over the same layers:
 //
-//     E = 2 pi / M  sum B g max(0, w.n_X)      M: the taps that hit (or N, RadiosityNormalisation::samples)
-//     confidence = M / N
+//     gathering    E_k at each pixel, from what the layers sent (radiosity_gather.h)
+//     blur         of E_k and its confidence (bilateral_blur.h), and its average over frames (temporal_filter.h)
+//     reflection   indirect.k = albedo / pi E_k, which bounce k + 1 gathers (radiosity_reflection.h)
 //
-// A tap hits where w.n_X > 0 and, if test_tap_normal is set, -w.n_Y > 0.01. A hit farther away than `radius` sends
-// nothing; it still counts in M where the tap's normal is tested, and is no hit where it is not. With two layers a tap
-// takes the one that sends more, and counts as a hit if either layer does.
-//   Sources: Mara et al. 2016, "Deep G-Buffers for Stable Global Illumination Approximation"; the counting: the code
-//   that its authors ship with G3D; Soler, Hoel, Rochet 2010, "A Deferred Shading Pipeline for Real-Time Indirect
-//   Illumination". Good for: light from bright surfaces nearby. Bad for: light from outside the view, and light that
-//   something blocks: no tap is tested for visibility. Taps are even in screen radius and angle, while 2 pi / M weighs
-//   them as if they were even in solid angle, so that more taps do not converge to the integral; M averages over the
-//   hits only, as if the rest of the hemisphere looked like them.
+// What bounce 1 gathers is the plane `direct`. With `bounces` = K all K follow each other in a frame, as Nielsen 2015
+// has it; with `carry` each frame adds one to what the frame before reflected, as Mara et al. 2016 have it
+// (radiosity_carry.h). Then radiosity_sum.h makes the planes `irradiance` and `indirect`, which hold all bounces, and
+// `confidence`. A plane indirect.k exists for k up to K; `indirect.1` costs no more bounces than one.
 //
 // Light that reaches X from emissive surfaces in one segment is `direct`, so they do not shine through taps. With
-// `emitters_shine` they do, as in the sources: B is then direct + emission at Y. The emitters' light must be left out
-// of `direct` (direct.emitters = false), or it would be counted twice, and takes the place of one bounce: `irradiance`,
-// `indirect.1` and `indirect` hold light of emitters after no bounce besides light of lamps, suns and the environment
-// after one. No plane then means what the truth's plane of its name means; what is to be compared is the sum direct +
-// indirect, with the truth's direct + (of lamps, suns and environment only) indirect.1, which is the truth's `direct`
-// where emissive surfaces are the only lights.
-// Choices where the sources are silent: a tap outside the image (guard band included) or without a surface is no hit. A
-// far tap reads the MIP chain of the depth only; normal and radiance are those of the very pixel that the chain's texel
-// holds, at level 0: exact, at the price of scattered reads.
+// `emitters_shine` they do, as in the sources: bounce 1 then gathers direct + emission. The emitters' light must be
+// left out of `direct` (direct.emitters = false), or it would be counted twice, and takes the place of one bounce:
+// `irradiance`, `indirect.k` and `indirect` hold light of emitters after one bounce less besides light of lamps, suns
+// and the environment. No plane then means what the truth's plane of its name means; what is to be compared is the sum
+// direct + indirect, with the truth's direct + indirect of one bounce less for emitters, which is the truth's `direct`
+// where emissive surfaces are the only lights and there is one bounce.
 #pragma once
 
-#include "rasterizer/bilateral_blur.h"
-#include "rasterizer/fullscreen.h"
+#include <vector>
+
 #include "rasterizer/pass.h"
-#include "rasterizer/sample_spiral.h"
 
 namespace plumb {
 
-// Writes the plane `radiosity` (rgb: E; a: confidence), or `radiosity.unfiltered` where the method blurs it.
-class RadiosityPass final : public Pass {
-public:
-    // Throws MethodError for parameters out of range.
-    explicit RadiosityPass(const PassResources& resources);
-    void execute(const PassFrame& frame) override;
-
-private:
-    const GlTexture& depth_;
-    const GlTexture& normal_;
-    const GlTexture* position_;  // where positions are stored
-    const GlTexture& direct_;
-    const GlTexture* emission_ = nullptr;
-    SampleSpiral spiral_;
-    FullscreenDraw draw_;
-    GlFramebuffer target_;
-    InnerArea area_;
-};
-
-// Writes those of the planes `irradiance` (E), `confidence`, `indirect.1` and `indirect` (albedo / pi E) that are read.
-class RadiosityReflectionPass final : public Pass {
-public:
-    explicit RadiosityReflectionPass(const PassResources& resources);
-    void execute(const PassFrame& frame) override;
-
-private:
-    const GlTexture& gathered_;
-    const GlTexture& albedo_;
-    ShaderDefines locations_;  // where each output that is read goes
-    GlFramebuffer target_;
-    FullscreenDraw draw_;
-    InnerArea area_;
-};
-
-// The gathering, its blur and the reflection.
-std::vector<PassDeclaration> declare_radiosity(const Method& method);
-
-std::string_view to_string(RadiosityNormalisation normalisation);
+// All passes of it, in the order of execution.
+std::vector<PassDeclaration> declare_radiosity(const Scene& scene, const Method& method);
 
 }  // namespace plumb

@@ -4,11 +4,10 @@
 #include <gtest/gtest.h>
 
 #include "gl_test.h"
-#include "radiosity_counterpart.h"
+#include "radiosity_agreement.h"
 #include "rasterizer/gl_error.h"
 #include "rasterizer/pipeline.h"
 #include "scenes/builtin.h"
-#include "screen_space_run.h"
 
 namespace plumb {
 namespace {
@@ -16,44 +15,9 @@ namespace {
 using RadiosityTest = GlTest;
 PLUMBLINE_BOTH_BACKENDS(RadiosityTest);
 
-Method unblurred(RadiositySettings radiosity) {
-    radiosity.blur.radius = 0;
-    Method method;
-    method.radiosity = radiosity;
-    return method;
-}
-
 const Quantities all_planes = {.planes = {"irradiance", "confidence", "indirect", "indirect.1"}};
 
-// Compares images and counterpart pixel by pixel; returns the share of pixels that rounding leaves open.
-double expect_agreement(const counterpart::Layers& layers, const RadiositySettings& settings, const Image& irradiance,
-                        const Image& confidence, Falloff falloff = Falloff::hard) {
-    const int width = layers.width(), height = layers.height();
-    int ambiguous = 0, wrong = 0;
-    for (int y = 0; y < height; ++y) {
-        for (int x = 0; x < width; ++x) {
-            const counterpart::Irradiance expected =
-                counterpart::gathered_irradiance(layers, settings, falloff, {x, y});
-            ambiguous += expected.ambiguous;
-            if (expected.ambiguous) continue;
-            const int row = height - 1 - y;
-            bool right = std::abs(confidence.at(x, row) - expected.confidence) < 1e-6;  // a ratio of small integers
-            for (int c = 0; c < 3; ++c) {
-                // Float positions 4 m away are good to 1e-6 m, so that the cosine to a tap some millimetres away is
-                // good to a few 1e-4; E is at most 2 pi.
-                right = right && std::abs(irradiance.at(x, row, c) - expected.irradiance[c]) < 1e-3;
-            }
-            if (!right && ++wrong < 5) {
-                ADD_FAILURE() << "pixel (" << x << ", " << y << ") from the bottom left: irradiance "
-                              << irradiance.at(x, row, 0) << ", confidence " << confidence.at(x, row) << "; expected "
-                              << expected.irradiance[0] << " and " << expected.confidence;
-            }
-        }
-    }
-    EXPECT_EQ(wrong, 0);
-    return static_cast<double>(ambiguous) / (width * height);
-}
-
+// Returns the share of pixels that rounding leaves open.
 double expect_agreement(GlContext& context, const counterpart::Layers& given, const RadiositySettings& settings) {
     ScreenSpaceRun run(context, given, unblurred(settings), all_planes);
     const Image irradiance = run.render("irradiance", 3), confidence = run.render("confidence", 1);

@@ -14,6 +14,7 @@
 #include <glm/glm.hpp>
 
 #include "frames/image.h"
+#include "frames/quantities.h"
 #include "rasterizer/method.h"
 #include "rasterizer/sample_spiral.h"
 #include "scenes/camera.h"

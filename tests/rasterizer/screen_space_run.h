@@ -35,14 +35,14 @@ public:
         std::vector<PassDeclaration> declarations = {
             {"given",
              {},
-             {"depth", "normal", "direct", "albedo", "layer2.depth", "layer2.normal", "layer2.direct"},
+             {"depth", "normal", "direct", "albedo", "layer2.depth", "layer2.normal", "layer2.direct", "layer2.albedo"},
              [](const PassResources&) { return nullptr; }}};
         const auto add = [&](std::vector<PassDeclaration> more) {
             for (PassDeclaration& pass : more) declarations.push_back(std::move(pass));
         };
         add(declare_depth_mip_chain());
         add(declare_ambient_obscurance(method_, quantities_));
-        add(declare_radiosity(method_));
+        add(declare_radiosity(scene_, method_));
         add(std::move(further_passes));
         const PassPlan plan = plan_passes(declarations, quantities_.planes);
         const PassResources resources{

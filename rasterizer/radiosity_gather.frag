@@ -1,7 +1,9 @@
-// One bounce of diffuse light from the visible layers; radiosity.h has the formulas.
+// The light that the visible layers send to each pixel of one of them; radiosity_gather.h has the formulas.
 //
-// Defines: LAYERS, TEST_TAP_NORMAL and EMITTERS_SHINE (0, 1), NORMALISATION with the names of its values, RADIUS (metres), MIP_OFFSET,
-// FINEST_LEVEL, COARSEST_LEVEL, and those of falloff.glsl and sample_spiral.glsl.
+// Defines: RECEIVER_LAYER, LAYERS (that taps look at), SENDING_LAYERS (of these: that send light), ESTIMATOR and
+// NORMALISATION with the names of their values, TAPS (in all), TEST_TAP_NORMAL, FAR_TAPS_HIT and EMITTERS_SHINE (0, 1),
+// RADIUS (metres), SPREAD_PIXELS (0: the radius as it projects), MIP_OFFSET, FINEST_LEVEL, COARSEST_LEVEL, and those of
+// falloff.glsl and sample_spiral.glsl.
 
 #include "depth_mip_chain.glsl"
 #include "falloff.glsl"
@@ -23,6 +25,14 @@ struct Tap {
     int level;
 };
 
+vec3 sent_light(ivec2 pixel, int layer) {
+    vec3 light = layer < SENDING_LAYERS ? texelFetch(radiance, ivec3(pixel, layer), 0).rgb : vec3(0.0);
+#if EMITTERS_SHINE
+    light += texelFetch(emission, ivec3(pixel, layer), 0).rgb;
+#endif
+    return light;
+}
+
 // The light that a tap sends, before 2 pi / M; in alpha whether it counts as a hit.
 vec4 received(Tap tap, int layer, vec3 centre, vec3 camera_normal) {
     float tap_depth = texelFetch(depth, ivec3(tap.texel, layer), tap.level).r;
@@ -36,27 +46,29 @@ vec4 received(Tap tap, int layer, vec3 centre, vec3 camera_normal) {
 #if TEST_TAP_NORMAL
     vec3 tap_normal = normal_of_texel(texelFetch(normal, ivec3(tap.source, layer), 0));
     hit = hit && -dot(world_space_direction(direction), tap_normal) > 0.01;
-#else
+#endif
+#if !FAR_TAPS_HIT
     hit = hit && near;
 #endif
-    vec3 light = texelFetch(radiance, ivec3(tap.source, layer), 0).rgb;
-#if EMITTERS_SHINE
-    light += texelFetch(emission, ivec3(tap.source, layer), 0).rgb;
-#endif
+    vec3 light = sent_light(tap.source, layer);
     return hit ? vec4(near ? cosine * falloff(square * (1.0 / (RADIUS * RADIUS))) * light : vec3(0.0), 1.0) : vec4(0.0);
 }
 
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
-    float centre_depth = texelFetch(depth, ivec3(pixel, 0), 0).r;
+    float centre_depth = texelFetch(depth, ivec3(pixel, RECEIVER_LAYER), 0).r;
     irradiance = vec4(0.0);
     if (is_background(centre_depth)) return;
 
-    vec3 camera_normal = camera_space_direction(normal_of_texel(texelFetch(normal, ivec3(pixel, 0), 0)));
-    vec3 centre = surface_point(pixel, 0, centre_depth);
+    vec3 camera_normal = camera_space_direction(normal_of_texel(texelFetch(normal, ivec3(pixel, RECEIVER_LAYER), 0)));
+    vec3 centre = surface_point(pixel, RECEIVER_LAYER, centre_depth);
     uint jitter = spiral_jitter(pixel);
     vec2 spin = spiral_spin(pixel, jitter);
+#if SPREAD_PIXELS > 0
+    float tap_spacing = float(SPREAD_PIXELS) / float(SPIRAL_SAMPLES);
+#else
     float tap_spacing = radius_in_pixels(RADIUS, centre_depth) / float(SPIRAL_SAMPLES);
+#endif
     float first_tap = float(jitter) / 65536.0;
 
     vec4 sum = vec4(0.0);
@@ -67,19 +79,23 @@ void main() {
         tap.level = mip_level(distance, MIP_OFFSET, FINEST_LEVEL, COARSEST_LEVEL);
         tap.texel = texel_at(position, tap.level);
         tap.source = pixel_of_texel(tap.texel, tap.level);
-        vec4 larger = received(tap, 0, centre, camera_normal);
+        vec4 light = received(tap, 0, centre, camera_normal);
 #if LAYERS == 2
         vec4 second = received(tap, 1, centre, camera_normal);
-        bool second_wins = dot(second.rgb, second.rgb) > dot(larger.rgb, larger.rgb);
-        larger = vec4(second_wins ? second.rgb : larger.rgb, max(larger.a, second.a));
+#if ESTIMATOR == MARA2016
+        bool second_wins = dot(second.rgb, second.rgb) > dot(light.rgb, light.rgb);
+        light = vec4(second_wins ? second.rgb : light.rgb, max(light.a, second.a));
+#elif ESTIMATOR == NIELSEN2015
+        light += second;
 #endif
-        sum += is_inside(position) ? larger : vec4(0.0);
+#endif
+        sum += is_inside(position) ? light : vec4(0.0);
     }
 
 #if NORMALISATION == HITS
     float divisor = max(sum.a, 1.0);
 #elif NORMALISATION == SAMPLES
-    float divisor = float(SPIRAL_SAMPLES);
+    float divisor = float(TAPS);
 #endif
-    irradiance = vec4(2.0 * 3.14159265 / divisor * sum.rgb, sum.a / float(SPIRAL_SAMPLES));
+    irradiance = vec4(2.0 * 3.14159265 / divisor * sum.rgb, sum.a / float(TAPS));
 }
