@@ -31,6 +31,27 @@ void add_blur(std::vector<MethodParameter>& parameters, const std::string& prefi
                       });
 }
 
+void add_reflections(std::vector<MethodParameter>& parameters, ReflectionSettings& reflections) {
+    parameters.insert(parameters.end(),
+                      {
+                          {"reflections.enabled", &reflections.enabled},
+                          {"reflections.roughness", choice(reflections.roughness, {"mirror", "mip", "samples"})},
+                          {"reflections.samples", &reflections.samples, 1, 4096},
+                          {"reflections.layers", &reflections.layers, 1, 2},
+                          {"reflections.step", &reflections.step, 0.25, 64},
+                          {"reflections.first_step", &reflections.first_step, 0.25, 64},
+                          {"reflections.max_steps", &reflections.max_steps, 1, 16384},
+                          {"reflections.refinement_steps", &reflections.refinement_steps, 0, 16},
+                          {"reflections.thickness", &reflections.thickness, 0, 1e6},
+                          {"reflections.max_distance", &reflections.max_distance, 1e-6, infinity},
+                          {"reflections.bias", &reflections.bias, 0, 1e3},
+                          {"reflections.test_hit_normal", &reflections.test_hit_normal},
+                          {"reflections.border_fade", &reflections.border_fade, 0, 4096},
+                          {"reflections.fallback", choice(reflections.fallback, {"none", "environment", "probe"})},
+                          {"reflections.lamps", &reflections.lamps},
+                      });
+}
+
 void add_temporal(std::vector<MethodParameter>& parameters, const std::string& prefix, TemporalFilterSettings& filter) {
     parameters.insert(parameters.end(), {
                                             {prefix + "alpha", &filter.alpha, 0, 0.99},
@@ -84,14 +105,17 @@ std::string gbuffer_reason(const Method& method, std::string_view name) {
     constexpr std::array of_rendering = {"gbuffer.separation_unit", "gbuffer.generation",    "gbuffer.layer_selection",
                                          "gbuffer.depth_mapping",   "gbuffer.normal_format", "gbuffer.position"};
     const GBufferSettings& gbuffer = method.gbuffer;
-    if (gbuffer.layers == 1 && std::ranges::find(of_two_layers, name) != of_two_layers.end())
+    // Reflections may take it for the thickness of surfaces.
+    const bool is_thickness = method.reflections.enabled && method.reflections.thickness == 0.0f &&
+                              (name == "gbuffer.minimum_separation" || name == "gbuffer.separation_unit");
+    if (gbuffer.layers == 1 && !is_thickness && std::ranges::find(of_two_layers, name) != of_two_layers.end())
         return "gbuffer.layers = 1";
     if (gbuffer.source == SourceOfStage::truth && std::ranges::find(of_rendering, name) != of_rendering.end())
         return "gbuffer.source = \"truth\"";
     if (name == "gbuffer.layer_selection" && gbuffer.generation == LayerGeneration::peel)
         return "gbuffer.generation = \"peel\"";
-    if (name == "gbuffer.position" && !method.ao.enabled && !method.radiosity.enabled)
-        return "ao.enabled = false and radiosity.enabled = false";
+    if (name == "gbuffer.position" && !method.ao.enabled && !method.radiosity.enabled && !method.reflections.enabled)
+        return "ao.enabled = false, radiosity.enabled = false and reflections.enabled = false";
     return "";
 }
 
@@ -103,6 +127,7 @@ bool reads_ambient(const Method& method, AmbientSource source) {
 // The same of the lights, the environment's cubes and the probe.
 std::string light_reason(const Method& method, std::string_view name) {
     const DirectSettings& direct = method.direct;
+    const ReflectionSettings& reflections = method.reflections;
     if (name.starts_with("direct.volume_") && direct.local_lights == LocalLights::fullscreen) {
         return "direct.local_lights = \"fullscreen\"";
     }
@@ -111,12 +136,32 @@ std::string light_reason(const Method& method, std::string_view name) {
     }
     if (name.starts_with("direct.shadow.emitter_") && !direct.emitters) return "direct.emitters = false";
     const bool cube = direct.source == SourceOfStage::method && direct.environment == EnvironmentIrradiance::cube;
-    if (name == "environment.size" && !cube && !reads_ambient(method, AmbientSource::environment)) {
-        return "no stage reads the environment's cubes (direct.environment, radiosity.fill or composite.fill would)";
+    const auto falls_back = [&](ReflectionFallback to) { return reflections.enabled && reflections.fallback == to; };
+    if (name == "environment.size" && !cube && !reads_ambient(method, AmbientSource::environment) &&
+        !falls_back(ReflectionFallback::environment)) {
+        return "no stage reads the environment's cubes (direct.environment, radiosity.fill, composite.fill or "
+               "reflections.fallback would)";
     }
-    if (name == "environment.samples") return "no stage reads glossy levels";
-    if (name.starts_with("probe.") && !reads_ambient(method, AmbientSource::probe)) {
-        return "no stage reads the probe (radiosity.fill or composite.fill would)";
+    if (name == "environment.samples" && !falls_back(ReflectionFallback::environment) &&
+        !falls_back(ReflectionFallback::probe)) {
+        return "no stage reads glossy levels (reflections.fallback would)";
+    }
+    if (name == "environment.samples" && reflections.roughness == ReflectionRoughness::samples) {
+        return "reflections.roughness = \"samples\", which reads the sharpest level";
+    }
+    if (name.starts_with("probe.") && !reads_ambient(method, AmbientSource::probe) &&
+        !falls_back(ReflectionFallback::probe)) {
+        return "no stage reads the probe (radiosity.fill, composite.fill or reflections.fallback would)";
+    }
+    return "";
+}
+
+// The same of the reflections.
+std::string reflection_reason(const ReflectionSettings& reflections, std::string_view name) {
+    if (!name.starts_with("reflections.") || name == "reflections.enabled") return "";
+    if (!reflections.enabled) return "reflections.enabled = false";
+    if (name == "reflections.samples" && reflections.roughness != ReflectionRoughness::samples) {
+        return "reflections.roughness is not \"samples\"";
     }
     return "";
 }
@@ -239,6 +284,7 @@ std::vector<MethodParameter> method_parameters(Method& m) {
                                             {"composite.fill", choice(m.composite.fill, ambient_sources)},
                                             {"composite.ambient", &m.composite.ambient, 0, 1e6},
                                         });
+    add_reflections(parameters, m.reflections);
     return parameters;
 }
 
@@ -254,11 +300,16 @@ std::string reason_without_effect(const Method& method, std::string_view name) {
     if (name.starts_with("radiosity.") && name != "radiosity.enabled" && !method.radiosity.enabled) {
         return "radiosity.enabled = false";
     }
-    if (name.starts_with("direct.") && name != "direct.source" && method.direct.source == SourceOfStage::truth) {
+    // Highlights of lamps have shadows, wherever `direct` comes from.
+    const bool lights_highlights = method.reflections.enabled && method.reflections.lamps &&
+                                   name.starts_with("direct.shadow.") && !name.starts_with("direct.shadow.emitter_");
+    if (name.starts_with("direct.") && name != "direct.source" && !lights_highlights &&
+        method.direct.source == SourceOfStage::truth) {
         return "direct.source = \"truth\"";
     }
     if (std::string reason = shadow_reason(method.direct.shadow, name); !reason.empty()) return reason;
     if (std::string reason = light_reason(method, name); !reason.empty()) return reason;
+    if (std::string reason = reflection_reason(method.reflections, name); !reason.empty()) return reason;
     if (std::string reason = blur_reason(method.ao.blur, "ao.blur.", name); !reason.empty()) return reason;
     if (std::string reason = blur_reason(method.radiosity.blur, "radiosity.blur.", name); !reason.empty())
         return reason;

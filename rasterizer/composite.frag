@@ -1,6 +1,6 @@
 // The sum of all terms, physical or as the demo of Mara et al. weighs them; composite_pass.h has the formulas.
 //
-// Defines: the texture units of the planes that there are: DIRECT, EMISSION, INDIRECT; DEMO, and then
+// Defines: the texture units of the planes that there are: DIRECT, EMISSION, INDIRECT, REFLECTION; DEMO, and then
 // VISIBILITY and CONFIDENCE, and where there is ambient light DEPTH, NORMAL, ALBEDO and those of ambient_light.glsl.
 
 #ifdef DEPTH
@@ -16,6 +16,9 @@ layout(binding = EMISSION) uniform sampler2DArray emission_plane;
 #endif
 #ifdef INDIRECT
 layout(binding = INDIRECT) uniform sampler2DArray indirect_plane;
+#endif
+#ifdef REFLECTION
+layout(binding = REFLECTION) uniform sampler2DArray reflection_plane;
 #endif
 #ifdef DEMO
 layout(binding = VISIBILITY) uniform sampler2DArray visibility_plane;
@@ -52,4 +55,7 @@ void main() {
     total += texelFetch(emission_plane, texel, 0).rgb;
 #endif
     total += indirect;
+#ifdef REFLECTION
+    total += texelFetch(reflection_plane, texel, 0).rgb;
+#endif
 }

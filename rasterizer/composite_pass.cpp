@@ -16,9 +16,10 @@ struct Term {
     const char* plane;
     const char* define;
 };
-constexpr std::array<Term, 8> terms = {{{"direct", "DIRECT"},
+constexpr std::array<Term, 9> terms = {{{"direct", "DIRECT"},
                                         {"emission", "EMISSION"},
                                         {"indirect", "INDIRECT"},
+                                        {"reflection", "REFLECTION"},
                                         {"ao", "VISIBILITY"},
                                         {"confidence", "CONFIDENCE"},
                                         {"depth", "DEPTH"},
@@ -32,6 +33,7 @@ bool is_read(std::string_view plane, const Scene& scene, const Method& method) {
     if (plane == "direct") return true;
     if (plane == "emission") return scene.has_emissive_surfaces() || !scene.environment.is_black();
     if (plane == "indirect") return method.radiosity.enabled;
+    if (plane == "reflection") return method.reflections.enabled;
     if (plane == "ao" || plane == "confidence") return is_demo(method);
     return is_demo(method) && method.composite.fill != AmbientSource::none;
 }
@@ -76,7 +78,8 @@ CompositePass::CompositePass(const PassResources& resources)
         const bool read = is_read(term.plane, resources.scene, resources.method);
         planes_.push_back(read ? &resources.planes.get(term.plane) : nullptr);
     }
-    const GlTexture& total = resources.planes.create(composited_plane(resources.method), GL_RGBA16F, 1);
+    const GLenum format = resources.method.reflections.enabled ? GL_RGBA32F : GL_RGBA16F;
+    const GlTexture& total = resources.planes.create(composited_plane(resources.method), format, 1);
     target_ = GlFramebuffer(resources.context, std::array{GlAttachment{&total}}, {}, "composite");
 }
 

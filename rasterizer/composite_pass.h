@@ -1,7 +1,9 @@
-// The sum that a camera sees: the plane `total`, RGBA16F.
+// The sum that a camera sees: the plane `total`, RGBA16F; with reflections, whose highlights may exceed half floats,
+// RGBA32F.
 //
-//     physical   emission + direct + indirect       each term stands on its own: nothing multiplies it
+//     physical   emission + direct + indirect + reflection       each term stands on its own: nothing multiplies it
 //     demo       emission + (0.35 + 0.65 v) direct + c v indirect + (1 - 0.7 c) v albedo / pi E_ambient
+//                + reflection
 //                v = 0.95 ao + 0.05                      ambient visibility that never quite vanishes
 //                c = clamp(2 (confidence - 0.35) + 0.35, 0, 1)      of the radiosity, which also boosts `indirect`
 //

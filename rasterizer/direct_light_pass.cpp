@@ -55,7 +55,7 @@ DirectLightPass::DirectLightPass(const PassResources& resources, int layer)
       emitter_cubes_(GlBuffer::from(context_, lights_.emitter_cube_records)),
       depth_(resources.planes.get("depth")),
       normal_(resources.planes.get("normal")),
-      albedo_(resources.planes.get("albedo")) {
+      albedo_(resources.planes.get(diffuse_albedo_plane(resources.scene, resources.method))) {
     PlaneTextures& planes = resources.planes;
     // Whoever comes first, this pass for either layer or the truth's, allocates for both layers.
     if (!planes.has("direct"))
@@ -127,7 +127,7 @@ PassDeclaration declare_direct_light(const Scene& scene, const LightSet& lights,
     const std::string prefix(layer == 0 ? "" : second_layer_prefix);
     PassDeclaration pass;
     pass.name = layer == 0 ? "direct" : "direct.layer2";
-    pass.inputs = {prefix + "depth", prefix + "normal", prefix + "albedo"};
+    pass.inputs = {prefix + "depth", prefix + "normal", prefix + diffuse_albedo_plane(scene, method)};
     for (std::string& texture : shadow_textures(lights)) pass.inputs.push_back(std::move(texture));
     if (uses_light_volumes(scene, method)) pass.inputs.push_back(prefix + "local_irradiance");
     if (uses_irradiance_cube(scene, method)) pass.inputs.emplace_back("environment.irradiance");

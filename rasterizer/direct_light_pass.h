@@ -1,8 +1,9 @@
 // Deferred direct lighting of one layer: the plane `direct`, RGBA16F.
 //
 // Sums what point, spot and directional lights, emissive surfaces and the environment send to each pixel in one
-// segment, times albedo / pi. Unoccluded, analytic lights and emitters of up to 64 triangles are exact; shadows are
-// those of the shadow maps (shadow_pass.h), filtered over 2 x 2 texels.
+// segment, times the diffuse albedo / pi (what the specular lobe reflects of lights is `reflection`, and what it leaves
+// for the diffuse one is gbuffer_planes.h's). Unoccluded, analytic lights and emitters of up to 64 triangles are exact;
+// shadows are those of the shadow maps (shadow_pass.h), filtered over 2 x 2 texels.
 //   Point and spot lights fall off as their attenuation says; they are shaded here, or by their volumes
 //   (light_volume_pass.h) whose sum this pass adds. Not simulated: the angular radius of directional lights, whose
 //   shadows stay sharp (direct.shadow.pcf_radius blurs them by one width everywhere); transmission, since a transparent

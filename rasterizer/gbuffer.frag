@@ -2,12 +2,18 @@
 //
 // Defines: COMPARISON_LAYER (of the depth behind which fragments are kept), LAYERS_AT_ONCE (then only those of layer 1
 // are compared, and layer 2 is the depth of the frame to come), REPROJECT (compares in the previous frame), WRITE_NORMAL,
-// WRITE_ALBEDO, WRITE_EMISSION, WRITE_DISPLACEMENT, WRITE_POSITION with the location of each output, those of
-// material.glsl and of gbuffer_vertex.glsl.
+// WRITE_ALBEDO, WRITE_DIFFUSE_ALBEDO, WRITE_SPECULAR, WRITE_ROUGHNESS, WRITE_EMISSION, WRITE_DISPLACEMENT, WRITE_POSITION
+// with the location of each output, those of material.glsl, of gbuffer_vertex.glsl and, with WRITE_DIFFUSE_ALBEDO, of
+// specular_albedo.glsl.
 #include "gbuffer_vertex.glsl"
 #include "material.glsl"
 #include "normal_encoding.glsl"
 #include "view.glsl"
+
+#ifdef WRITE_DIFFUSE_ALBEDO
+#include "ggx.glsl"
+#include "specular_albedo.glsl"
+#endif
 
 in SurfaceVertex { SURFACE_VERTEX_MEMBERS } vertex;
 
@@ -17,6 +23,15 @@ layout(location = WRITE_NORMAL) out vec4 normal;
 #endif
 #ifdef WRITE_ALBEDO
 layout(location = WRITE_ALBEDO) out vec3 albedo;
+#endif
+#ifdef WRITE_DIFFUSE_ALBEDO
+layout(location = WRITE_DIFFUSE_ALBEDO) out vec3 diffuse_albedo;
+#endif
+#ifdef WRITE_SPECULAR
+layout(location = WRITE_SPECULAR) out vec4 specular;
+#endif
+#ifdef WRITE_ROUGHNESS
+layout(location = WRITE_ROUGHNESS) out float roughness;
 #endif
 #ifdef WRITE_EMISSION
 layout(location = WRITE_EMISSION) out vec3 emission;
@@ -54,6 +69,17 @@ bool lay_behind() {
 #endif
 #endif
 
+#ifdef WRITE_DIFFUSE_ALBEDO
+// What the specular lobe leaves of light that comes from the viewer: the diffuse lobe is scaled by it.
+vec3 left_by_specular(SpecularSurface surface, vec3 n) {
+    if (surface.f90 == 0.0 && surface.f0 == vec3(0.0)) return vec3(1.0);
+    vec3 to_viewer = -normalize(camera_space_point(gl_FragCoord.xy, depth));
+    float cosine = max(dot(lobe_normal(camera_space_direction(n), to_viewer), to_viewer), 0.0);
+    vec2 share = specular_split(cosine, ggx_alpha(surface.roughness));
+    return 1.0 - (share.x * surface.f0 + share.y * surface.f90);
+}
+#endif
+
 bool is_kept() {
 #if !defined(COMPARISON_LAYER)
     return true;
@@ -81,12 +107,27 @@ void main() {
     if (!is_opaque(uv)) discard;
 #endif
     bool dark = two_sided == 0 && !gl_FrontFacing;
-#ifdef WRITE_NORMAL
+#if defined(WRITE_NORMAL) || defined(WRITE_DIFFUSE_ALBEDO)
     vec3 n = normalize(vertex.world_normal);
-    normal = texel_of_normal(gl_FrontFacing ? n : -n);
+    n = gl_FrontFacing ? n : -n;
+#endif
+#ifdef WRITE_NORMAL
+    normal = texel_of_normal(n);
 #endif
 #ifdef WRITE_ALBEDO
     albedo = dark ? vec3(0.0) : surface_albedo(uv);
+#endif
+#if defined(WRITE_DIFFUSE_ALBEDO) || defined(WRITE_SPECULAR) || defined(WRITE_ROUGHNESS)
+    SpecularSurface surface = surface_specular(uv);
+#endif
+#ifdef WRITE_DIFFUSE_ALBEDO
+    diffuse_albedo = dark ? vec3(0.0) : surface_albedo(uv) * left_by_specular(surface, n);
+#endif
+#ifdef WRITE_SPECULAR
+    specular = dark ? vec4(0.0) : vec4(surface.f0, surface.f90);
+#endif
+#ifdef WRITE_ROUGHNESS
+    roughness = surface.roughness;
 #endif
 #ifdef WRITE_EMISSION
 #ifdef EMISSION

@@ -1,9 +1,17 @@
 #include "rasterizer/gbuffer_draw.h"
 
+#include <algorithm>
 #include <array>
 #include <limits>
 
+#include "rasterizer/specular_albedo_texture.h"
+
 namespace plumb {
+namespace {
+
+constexpr GLuint specular_albedo_unit = SceneGeometry::first_free_texture_unit + 1;  // the comparison's is the first
+
+}  // namespace
 
 DepthTest::DepthTest(DepthMapping mapping)
     : farthest(mapping == DepthMapping::reversed ? 0.0f : 1.0f),
@@ -26,10 +34,16 @@ GBufferDraw::GBufferDraw(const PassResources& resources, const std::vector<std::
                          const ShaderDefines& defines)
     : scene_(resources.scene), geometry_(resources.geometry()) {
     const DepthTest test(resources.method.gbuffer.depth_mapping);
+    ShaderDefines of_table;
+    if (std::ranges::any_of(defines, [](const auto& define) { return define.first == "WRITE_DIFFUSE_ALBEDO"; })) {
+        specular_albedo_ = &specular_albedo_table(resources.context, resources.planes);
+        of_table = SpecularAlbedoTexture::defines(specular_albedo_unit);
+    }
     for (const MaterialVariant& variant : geometry_.variants()) {
         ShaderDefines all = defines;
         for (const auto& define : variant.defines()) all.push_back(define);
         for (const auto& define : test.defines) all.push_back(define);
+        for (const auto& define : of_table) all.push_back(define);
         if (geometry_.anything_moves()) all.emplace_back("MOVING", "1");
         programs_.push_back(&resources.programs.get(files, all));
     }
@@ -37,6 +51,7 @@ GBufferDraw::GBufferDraw(const PassResources& resources, const std::vector<std::
 
 void GBufferDraw::draw(const Frustum& frustum, const Frustum* next, int copies) const {
     geometry_.bind();
+    if (specular_albedo_) specular_albedo_->bind(specular_albedo_unit);
     int variant = -1, material = -1;
     for (const SceneDraw& draw : geometry_.draws()) {
         if (!frustum.may_see(draw.bounds) && !(next && next->may_see(draw.next_bounds))) continue;

@@ -39,7 +39,8 @@ public:
 private:
     const Scene& scene_;
     const SceneGeometry& geometry_;
-    std::vector<const Program*> programs_;  // one per variant of the geometry
+    std::vector<const Program*> programs_;        // one per variant of the geometry
+    const GlTexture* specular_albedo_ = nullptr;  // where the diffuse albedo is written
 };
 
 // The environment's radiance in the plane `emission` of the first layer, where nothing is in front of it.

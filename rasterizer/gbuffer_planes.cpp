@@ -14,9 +14,12 @@ struct GBufferPlane {
     std::string_view name;
     const char* location;  // define of gbuffer.frag; null: always location 0
 };
-constexpr std::array<GBufferPlane, 6> gbuffer_planes = {{{"depth", nullptr},
+constexpr std::array<GBufferPlane, 9> gbuffer_planes = {{{"depth", nullptr},
                                                          {"normal", "WRITE_NORMAL"},
                                                          {"albedo", "WRITE_ALBEDO"},
+                                                         {"diffuse_albedo", "WRITE_DIFFUSE_ALBEDO"},
+                                                         {"specular", "WRITE_SPECULAR"},
+                                                         {"roughness", "WRITE_ROUGHNESS"},
                                                          {"emission", "WRITE_EMISSION"},
                                                          {"displacement", "WRITE_DISPLACEMENT"},
                                                          {"camera_position", "WRITE_POSITION"}}};
@@ -24,6 +27,7 @@ constexpr std::array<GBufferPlane, 6> gbuffer_planes = {{{"depth", nullptr},
 GLenum format_of(std::string_view plane, const Method& method) {
     if (plane == "depth") return GL_R32F;
     if (plane == "normal") return texture_format(method.gbuffer.normal_format);
+    if (plane == "roughness") return GL_R16F;
     return plane == "displacement" || plane == "camera_position" ? GL_RGBA32F : GL_RGBA16F;
 }
 
@@ -70,6 +74,17 @@ GBufferTargets gbuffer_targets(const PassResources& resources, const GlTexture& 
         targets.colours.push_back({&resources.planes.get(name), layer});
     }
     return targets;
+}
+
+bool has_specular_lobes(const Scene& scene) {
+    return std::ranges::any_of(scene.instances, [&](const Instance& instance) {
+        return scene.materials[scene.meshes[instance.mesh].material].has_specular_lobe();
+    });
+}
+
+std::string diffuse_albedo_plane(const Scene& scene, const Method& method) {
+    const bool rendered = method.gbuffer.source == SourceOfStage::method;
+    return rendered && has_specular_lobes(scene) ? "diffuse_albedo" : "albedo";
 }
 
 bool stores_positions(const Method& method) {

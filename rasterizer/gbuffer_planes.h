@@ -5,6 +5,11 @@
 //   depth            R32F       metres along -Z, +infinity where nothing is
 //   normal           normal_encoding.h has the formats; turned to the viewer
 //   albedo           RGBA16F
+//   diffuse_albedo   RGBA16F    albedo times what the specular lobe leaves of light, 1 - E(o)
+//   (scenes/specular_albedo.h): what
+//                               the diffuse lobe reflects, seen from the camera
+//   specular         RGBA16F    f0 in rgb, f90 in a (scenes/material.h); 0: there is no specular lobe
+//   roughness        R16F       perceptual
 //   emission         RGBA16F    in the first layer also the environment's radiance where nothing is in front of it
 //   displacement     RGBA32F    where the surface point of an instance that moves was in the frame before minus where
 //   it
@@ -46,6 +51,12 @@ const GlTexture* stored_positions(const PassResources& resources);
 constexpr GLuint stored_position_unit = 3;
 // What every shader of a pipeline must know of the G-buffer's formats.
 ShaderDefines gbuffer_defines(const Method& method);
+
+// Whether anything in the scene has a specular lobe.
+bool has_specular_lobes(const Scene& scene);
+// The plane that diffuse reflection multiplies with: diffuse_albedo where the scene has specular lobes. Planes from the
+// truth have the albedo only: there, surfaces with a specular lobe reflect too much diffusely.
+std::string diffuse_albedo_plane(const Scene& scene, const Method& method);
 
 // Metres along the view axis.
 float separation_in_metres(const GBufferSettings& settings, const Camera& camera);

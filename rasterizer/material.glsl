@@ -19,6 +19,30 @@ bool is_opaque(vec2 uv) {
 }
 #endif
 
+// The specular lobe; f0 and f90 0: there is none.
+struct SpecularSurface {
+    vec3 f0;
+    float f90, roughness;
+};
+
+SpecularSurface surface_specular(vec2 uv) {
+    vec3 base_colour = base_colour_and_metallic.rgb;
+    float metallic = base_colour_and_metallic.a;
+    SpecularSurface surface;
+    surface.roughness = emission_and_roughness.a;
+#ifdef BASE_COLOUR_TEXTURE
+    base_colour *= textureLod(base_colour_texture, uv, 0.0).rgb;
+#endif
+#ifdef METALLIC_ROUGHNESS_TEXTURE
+    vec4 texel = textureLod(metallic_roughness_texture, uv, 0.0);
+    surface.roughness *= texel.g;
+    metallic *= texel.b;
+#endif
+    surface.f0 = mix(vec3(dielectric_reflectance), base_colour, metallic);
+    surface.f90 = mix(dielectric_reflectance > 0.0 ? 1.0 : 0.0, 1.0, metallic);
+    return surface;
+}
+
 // Diffuse reflectance: what is not metal.
 vec3 surface_albedo(vec2 uv) {
     vec3 base_colour = base_colour_and_metallic.rgb;

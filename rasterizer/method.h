@@ -1,6 +1,7 @@
 // A method: every parameter of the real-time side that can change a pixel, and nothing else.
 #pragma once
 
+#include <limits>
 #include <string>
 
 namespace plumb {
@@ -165,6 +166,30 @@ struct RadiositySettings {
     TemporalFilterSettings temporal = {};  // after the blur
 };
 
+// How wide the specular lobe is taken to be (reflections.h): one ray for all of it; one ray that reads a blurred image
+// by the lobe's footprint; or rays spread over it.
+enum class ReflectionRoughness { mirror, mip, samples };
+// What is reflected where a ray finds nothing or leaves the view.
+enum class ReflectionFallback { none, environment, probe };
+
+struct ReflectionSettings {
+    bool enabled = false;
+    ReflectionRoughness roughness = ReflectionRoughness::mip;
+    int samples = 16;          // rays per pixel, 1..4096; where roughness is `samples`
+    int layers = 2;            // 1 or 2, at most those of the G-buffer
+    float step = 2.0f;         // pixels between two looks along a ray
+    float first_step = 1.0f;   // pixels to the first one
+    int max_steps = 512;       // looks along a ray
+    int refinement_steps = 4;  // halvings of the step in which a ray passed behind a surface
+    float thickness = 0.0f;    // metres that surfaces are taken to be thick; 0: the G-buffer's minimum separation
+    float max_distance = std::numeric_limits<float>::infinity();  // metres
+    float bias = 0.005f;          // metres that a hit must rise above the reflecting point's tangent plane
+    bool test_hit_normal = true;  // what is hit must face the ray
+    int border_fade = 16;         // pixels from the image's border over which hits give way to the fallback
+    ReflectionFallback fallback = ReflectionFallback::none;
+    bool lamps = true;  // point, spot and directional lights have highlights
+};
+
 // How the resolved image is looked up between its pixels: bilinear smooths what moves, Catmull-Rom hardly does.
 enum class HistoryLookup { bilinear, catmull_rom };
 
@@ -196,6 +221,7 @@ struct Method {
     ProbeSettings probe;
     AmbientObscuranceSettings ao;
     RadiositySettings radiosity;
+    ReflectionSettings reflections;
     CompositeSettings composite;
     AntialiasSettings antialias;
 };

@@ -16,6 +16,7 @@
 #include "rasterizer/one_pass_gbuffer.h"
 #include "rasterizer/probe_pass.h"
 #include "rasterizer/radiosity.h"
+#include "rasterizer/reflections.h"
 #include "rasterizer/shadow_pass.h"
 #include "rasterizer/temporal_antialias.h"
 #include "rasterizer/truth_pass.h"
@@ -110,6 +111,7 @@ std::vector<PassDeclaration> declare_passes(const Scene& scene, const Method& me
     passes.push_back(declare_direct_light(scene, lights, method, 0));
     passes.push_back(declare_direct_light(scene, lights, method, 1));
     add_all(declare_radiosity(scene, method));
+    add_all(declare_reflections(scene, lights, method, quantities));
     passes.push_back(declare_composite(scene, method));
     passes.push_back(declare_temporal_antialias(scene, method));
     return passes;

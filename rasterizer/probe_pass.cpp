@@ -26,7 +26,7 @@ Method method_of_faces(const Method& method) {
     faces.gbuffer.guard_band = 0;
     faces.gbuffer.layers = faces.ao.layers = 1;
     faces.direct.source = SourceOfStage::method;
-    faces.radiosity.enabled = false;
+    faces.radiosity.enabled = faces.reflections.enabled = false;
     faces.composite = {};
     return faces;
 }

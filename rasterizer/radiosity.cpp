@@ -78,11 +78,11 @@ void declare_gathering(std::vector<PassDeclaration>& passes, const Scene& scene,
                                                      .read_beyond = plane_of_later_bounces(settings, bounce)}));
 }
 
-void declare_reflections(std::vector<PassDeclaration>& passes, const Method& method, int bounce) {
+void declare_reflections(std::vector<PassDeclaration>& passes, const Scene& scene, const Method& method, int bounce) {
     const RadiositySettings& settings = method.radiosity;
     const int layers = bounce < settings.bounces ? sending_layers(settings, bounce + 1) : 1;
     for (int layer = 0; layer < layers; ++layer) {
-        passes.push_back(declare_radiosity_reflection(method, bounce, layer));
+        passes.push_back(declare_radiosity_reflection(scene, method, bounce, layer));
         if (settings.carry) passes.back().disabled = carried_bounces;
     }
 }
@@ -98,10 +98,10 @@ std::vector<PassDeclaration> declare_radiosity(const Scene& scene, const Method&
         // The second layer first: what only the next frame reads of it is made with what is read of the first one.
         for (int layer = receiving_layers(settings, bounce) - 1; layer >= 0; --layer)
             declare_gathering(passes, scene, method, bounce, layer);
-        declare_reflections(passes, method, bounce);
+        declare_reflections(passes, scene, method, bounce);
     }
     if (settings.bounces < most_bounces) passes.push_back(declare_missing_bounces(settings));
-    passes.push_back(declare_radiosity_sum(method));
+    passes.push_back(declare_radiosity_sum(scene, method));
     if (!settings.enabled) {
         for (PassDeclaration& pass : passes) pass.disabled = "method.radiosity.enabled is false";
     }

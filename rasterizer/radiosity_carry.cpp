@@ -44,7 +44,7 @@ RadiosityCarryPass::RadiosityCarryPass(const PassResources& resources)
       depth_(resources.planes.get("depth")),
       previous_depth_(resources.planes.get(gbuffer_history)),
       direct_(resources.planes.get("direct")),
-      albedo_(resources.planes.get("albedo")),
+      albedo_(resources.planes.get(diffuse_albedo_plane(resources.scene, resources.method))),
       takes_all_(resources.method.radiosity.damping == 1.0f),
       reprojection_(resources, displacement_unit),
       draw_(resources.context, resources.programs, "radiosity_carry.frag", defines(resources)),
@@ -86,7 +86,9 @@ PassDeclaration declare_radiosity_carry(const Scene& scene, const Method& method
     PassDeclaration pass;
     pass.name = "radiosity carried on";
     for (int layer = 0; layer < settings.layers; ++layer) {
-        for (const char* plane : {"depth", "direct", "albedo"}) pass.inputs.push_back(layer_prefix(layer) + plane);
+        for (const std::string& plane :
+             {std::string("depth"), std::string("direct"), diffuse_albedo_plane(scene, method)})
+            pass.inputs.push_back(layer_prefix(layer) + plane);
         pass.outputs.push_back(layer_prefix(layer) + std::string(sent_radiosity_plane));
     }
     for (int layer = 0; layer < receiving_layers(settings, 1); ++layer) {

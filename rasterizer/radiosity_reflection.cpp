@@ -43,7 +43,7 @@ ShaderDefines boost_defines(const RadiositySettings& settings) {
 
 RadiosityReflectionPass::RadiosityReflectionPass(const PassResources& resources, int bounce, int layer)
     : gathered_(resources.planes.get(radiosity_plane(bounce))),
-      albedo_(resources.planes.get("albedo")),
+      albedo_(resources.planes.get(diffuse_albedo_plane(resources.scene, resources.method))),
       target_(make_target(resources, bounce, layer)),
       draw_(resources.context, resources.programs, "radiosity_reflection.frag",
             shader_defines(resources.method.radiosity, layer)),
@@ -56,11 +56,12 @@ void RadiosityReflectionPass::execute(const PassFrame&) {
     draw_.draw(target_);
 }
 
-PassDeclaration declare_radiosity_reflection(const Method& method, int bounce, int layer) {
+PassDeclaration declare_radiosity_reflection(const Scene& scene, const Method& method, int bounce, int layer) {
     const std::string prefix = layer_prefix(layer), plane = prefix + indirect_plane(bounce);
     PassDeclaration pass;
     pass.name = plane;
-    pass.inputs = {layer_prefix(gathered_layer(method.radiosity, layer)) + radiosity_plane(bounce), prefix + "albedo"};
+    pass.inputs = {layer_prefix(gathered_layer(method.radiosity, layer)) + radiosity_plane(bounce),
+                   prefix + diffuse_albedo_plane(scene, method)};
     pass.outputs = {plane};
     pass.create = [bounce, layer](const PassResources& resources) {
         return std::make_unique<RadiosityReflectionPass>(resources, bounce, layer);

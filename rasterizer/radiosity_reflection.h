@@ -33,7 +33,7 @@ private:
     InnerArea area_;
 };
 
-PassDeclaration declare_radiosity_reflection(const Method& method, int bounce, int layer);
+PassDeclaration declare_radiosity_reflection(const Scene& scene, const Method& method, int bounce, int layer);
 
 // For radiosity_boost.glsl.
 ShaderDefines boost_defines(const RadiositySettings& settings);

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "rasterizer/gbuffer_planes.h"
 #include "rasterizer/radiosity_planes.h"
 #include "rasterizer/radiosity_reflection.h"
 
@@ -38,7 +39,7 @@ bool fills(const Method& method) { return method.radiosity.fill != AmbientSource
 }  // namespace
 
 RadiositySumPass::RadiositySumPass(const PassResources& resources)
-    : albedo_(resources.planes.get("albedo")),
+    : albedo_(resources.planes.get(diffuse_albedo_plane(resources.scene, resources.method))),
       fill_(resources, resources.method.radiosity.fill, resources.method.radiosity.ambient, fill_unit),
       target_(make_target(resources, locations_)),
       draw_(resources.context, resources.programs, "radiosity_sum.frag", defines(resources)),
@@ -69,12 +70,12 @@ void RadiositySumPass::execute(const PassFrame&) {
     draw_.draw(target_);
 }
 
-PassDeclaration declare_radiosity_sum(const Method& method) {
+PassDeclaration declare_radiosity_sum(const Scene& scene, const Method& method) {
     const RadiositySettings& settings = method.radiosity;
     PassDeclaration pass;
     pass.name = "radiosity reflection";
     for (int bounce = 1; bounce <= settings.bounces; ++bounce) pass.inputs.push_back(radiosity_plane(bounce));
-    pass.inputs.emplace_back("albedo");
+    pass.inputs.push_back(diffuse_albedo_plane(scene, method));
     if (fills(method)) {
         for (const char* plane : {"depth", "normal"}) pass.inputs.emplace_back(plane);
         for (std::string& plane : AmbientLight::inputs(settings.fill)) pass.inputs.push_back(std::move(plane));

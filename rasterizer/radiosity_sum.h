@@ -39,6 +39,6 @@ private:
     InnerArea area_;
 };
 
-PassDeclaration declare_radiosity_sum(const Method& method);
+PassDeclaration declare_radiosity_sum(const Scene& scene, const Method& method);
 
 }  // namespace plumb

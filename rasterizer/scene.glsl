@@ -7,6 +7,7 @@ layout(std140, binding = 1) uniform InstanceBlock {
     float alpha_cutoff;
     int alpha_channel;
     int two_sided;
+    float dielectric_reflectance;
     mat4 previous_world_from_object;  // in the frame before
     mat4 next_world_from_object;      // in the frame to come
 };

@@ -25,7 +25,7 @@ struct InstanceBlock {
     float alpha_cutoff;
     int alpha_channel;
     int two_sided;
-    int padding;
+    float dielectric_reflectance;
     glm::mat4 previous_world_from_object;
     glm::mat4 next_world_from_object;
 };
@@ -102,6 +102,7 @@ InstanceBlock instance_block(const Material& material, const glm::mat4& now, con
     block.alpha_cutoff = material.alpha_cutoff;
     block.alpha_channel = material.alpha_texture != no_texture ? material.alpha_channel : 3;
     block.two_sided = material.two_sided ? 1 : 0;
+    block.dielectric_reflectance = material.dielectric_reflectance;
     block.previous_world_from_object = previous;
     block.next_world_from_object = next;
     return block;

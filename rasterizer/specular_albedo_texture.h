@@ -2,6 +2,7 @@
 // Shaders include specular_albedo.glsl.
 #pragma once
 
+#include "rasterizer/plane_textures.h"
 #include "rasterizer/shader.h"
 
 namespace plumb {
@@ -16,5 +17,8 @@ public:
 private:
     GlTexture table_;
 };
+
+// The one table of a pipeline; whoever asks first makes it.
+const GlTexture& specular_albedo_table(GlContext& context, PlaneTextures& planes);
 
 }  // namespace plumb

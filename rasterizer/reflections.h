@@ -1,0 +1,82 @@
+// Screen-space reflections: the plane `reflection`, radiance through the specular lobe of the first layer.
+//
+// A ray from the surface point X in direction w is projected: on the screen it is a straight line, along which the
+// reciprocal of depth is linear. It ends where it leaves the view's frustum or is `max_distance` long. It is looked at
+// `first_step` pixels (of the axis that it covers more pixels of) from X and then every `step` pixels, `max_steps`
+// times at most. Between two looks its depth covers an interval; it passes behind a layer where that interval meets [z,
+// z + thickness], z the layer's depth in the pixel of the second look. The stretch is then halved `refinement_steps`
+// times by the same question. What is found, the point Y in a pixel of the layer, is hit if it rises more than `bias`
+// above X's tangent plane (the surface does not reflect itself) and, with test_hit_normal, faces the ray: what is seen
+// of a surface from the front says nothing about its back. Else the ray goes on. Where both layers are passed in one
+// step the first wins.
+//   Sources: Mara et al. 2016, "Deep G-Buffers for Stable Global Illumination Approximation": a ray hits where it comes
+//   within the separation of either layer, else the environment answers; McGuire, Mara 2014, "Efficient GPU
+//   Screen-Space Ray Tracing": lines on the screen, in pixels, intervals of depth.
+//
+// With o the direction to the viewer, f0, f90 and alpha those of the material (scenes/ggx.h), L(w) what is found along
+// w, and A, B the split sum's tables (scenes/specular_albedo.h):
+//     mirror   (f0 A + f90 B) L(reflect(o))               one ray for all of the lobe; exact for a mirror
+//     mip      the same, but L read from the MIP chain of what surfaces send out (radiance_mip_chain.h), where a texel
+//              is as wide as the lobe's footprint: half of the microfacets' normals lie within atan(alpha) of the
+//              surface's, half of the light thus comes from a disc of radius r = |XY| tan(2 atan alpha), which holds as
+//              much as half of a square of side sqrt(2 pi) r. Neither the lobe's stretch at grazing incidence nor what
+//              the footprint overlaps besides Y's surface is considered.
+//     samples  mean of F G2 / G1 L(w_i), w_i reflected about visible normals (Heitz 2018), from the R2 sequence
+//     (Roberts
+//              2018) started at a hash of the pixel. Converges to the lobe's integral over what the layers hold. A
+//              mirror takes one ray.
+// L(w) of a hit is what the method knows of Y, as the path tracer counts bounces: emission; with Quantities::bounces of
+// 1 or more `direct`; of 2 or more, and with radiosity, also `indirect` (of the first layer, without the guard band).
+// Y's own specular lobe is missing: mirrors show mirrors black, but for what is diffuse in them. Within border_fade
+// pixels of the image's border (guard band included) hits fade into the fallback, as they do where nothing is hit:
+//     none         black
+//     environment  the scene's environment, prefiltered by roughness (radiance_maps.h); black where there is none
+//     probe        a probe's view, also prefiltered; without parallax
+// The highlights of lamps and suns come in as their own plane (lamp_highlights_pass.h).
+// Quantities::reflection_radius and its falloff apply as they do to the truth: what is farther away does not count, and
+// with a finite radius neither does a fallback.
+//   Good for: what the view shows, reflected at grazing angles. Bad for: what only a mirror shows: the backs of things,
+//   what is outside the view or hidden behind more than the layers hold; thin things thinner than a step; the path
+//   tracer's `reflection` also holds what passes straight through transparent sheets, which this does not.
+#pragma once
+
+#include "rasterizer/bilateral_blur.h"
+#include "rasterizer/fullscreen.h"
+#include "rasterizer/light_set.h"
+#include "rasterizer/pass.h"
+#include "rasterizer/radiance_mip_chain.h"
+
+namespace plumb {
+
+// Writes `reflection`, RGBA32F: a highlight may exceed half floats.
+class ReflectionPass final : public Pass {
+public:
+    // Throws MethodError for parameters out of range.
+    explicit ReflectionPass(const PassResources& resources);
+    void execute(const PassFrame& frame) override;
+
+private:
+    GlContext& context_;
+    const GBufferSettings gbuffer_;
+    float thickness_;
+    int rays_, rays_per_draw_;  // of a lobe; 0: one for all of it
+    const GlTexture &depth_, &normal_, &specular_, &roughness_;
+    const GlTexture* position_;  // where positions are stored
+    const GlTexture* chain_ = nullptr;
+    const GlTexture* lamps_ = nullptr;
+    const GlTexture* fallback_ = nullptr;
+    SurfaceRadiancePlanes sources_;
+    const GlTexture& specular_albedo_;
+    FullscreenDraw draw_;
+    GlFramebuffer target_;
+    InnerArea area_;
+};
+
+// Highlights, MIP chain and reflections. A scene without specular lobes has a black plane.
+std::vector<PassDeclaration> declare_reflections(const Scene& scene, const LightSet& lights, const Method& method,
+                                                 const Quantities& quantities);
+
+std::string_view to_string(ReflectionRoughness roughness);
+std::string_view to_string(ReflectionFallback fallback);
+
+}  // namespace plumb

@@ -1,0 +1,138 @@
+// Runs the passes of the reflections on layers that a test makes up, through the pipeline's own plan.
+#pragma once
+
+#include <limits>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "rasterizer/environment_maps_pass.h"
+#include "rasterizer/normal_encoding.h"
+#include "rasterizer/pass_plan.h"
+#include "rasterizer/reflections.h"
+#include "rasterizer/texture_transfer.h"
+#include "rasterizer/view_uniforms.h"
+#include "reflections_counterpart.h"
+
+namespace plumb {
+
+// Every pixel has this lobe.
+inline counterpart::Gloss even_gloss(const View& view, const glm::vec3& f0, float f90, float roughness) {
+    counterpart::Gloss gloss{Image(view.width(), view.height(), 3), Image(view.width(), view.height(), 1, f90),
+                             Image(view.width(), view.height(), 1, roughness)};
+    for (int y = 0; y < view.height(); ++y) {
+        for (int x = 0; x < view.width(); ++x) {
+            for (int c = 0; c < 3; ++c) gloss.f0.at(x, y, c) = f0[c];
+        }
+    }
+    return gloss;
+}
+
+class ReflectionRun {
+public:
+    // `sky`: the constant environment that the method may fall back on.
+    ReflectionRun(GlContext& context, counterpart::Layers layers, const counterpart::Gloss& gloss, Method method,
+                  Quantities quantities, const glm::vec3& sky = glm::vec3(0.0f))
+        : context_(context),
+          layers_(std::move(layers)),
+          method_(std::move(method)),
+          quantities_(std::move(quantities)),
+          planes_(context, layers_.width(), layers_.height()),
+          programs_(context),
+          view_uniforms_(context) {
+        // Something glossy to reflect and an environment; nothing of it is drawn.
+        scene_.materials.resize(1);
+        scene_.materials[0].metallic = 1.0f;
+        scene_.meshes.resize(1);
+        scene_.instances.resize(1);
+        scene_.environment.radiance = sky;
+        upload_layers(gloss);
+        view_uniforms_.update(layers_.view, layers_.view, method_.gbuffer.guard_band);
+        std::vector<PassDeclaration> declarations = {
+            {"given",
+             {},
+             {"depth", "normal", "direct", "specular", "roughness", "layer2.depth", "layer2.normal", "layer2.direct"},
+             [](const PassResources&) { return nullptr; }}};
+        declarations.push_back(declare_environment_maps(scene_, method_));
+        const LightSet no_lights(scene_, method_.direct);
+        for (PassDeclaration& pass : declare_reflections(scene_, no_lights, method_, quantities_))
+            declarations.push_back(std::move(pass));
+        const PassPlan plan = plan_passes(declarations, quantities_.planes);
+        const PassResources resources{
+            context_,  scene_,
+            method_,   quantities_,
+            planes_,   programs_,
+            plan.read, []() -> const SceneGeometry& { throw std::logic_error("no pass here draws geometry"); }};
+        for (const std::size_t index : plan.order) {
+            if (std::unique_ptr<Pass> pass = declarations[index].create(resources)) passes_.push_back(std::move(pass));
+        }
+    }
+
+    Image render(const std::string& plane = "reflection", int channels = 3, int layer = 0, int level = 0) {
+        context_.make_current();
+        view_uniforms_.bind();
+        for (const std::unique_ptr<Pass>& pass : passes_) pass->execute({layers_.view, layers_.view});
+        context_.check("reflections");
+        return read_back(planes_.get(plane), layer, channels, 0, level);
+    }
+
+    // What the passes see: normals as their encoding leaves them.
+    const counterpart::Layers& layers() const { return layers_; }
+
+private:
+    void upload_layers(const counterpart::Gloss& gloss) {
+        const int width = layers_.width(), height = layers_.height();
+        GlTexture& depth = planes_.create("depth", GL_R32F, 2);
+        GlTexture& normal = planes_.create("normal", GL_RG16, 2);
+        GlTexture& direct = planes_.create("direct", GL_RGBA32F, 2);
+        const glm::mat3 world_from_camera(layers_.view.camera().world_from_camera);
+        for (int layer = 0; layer < 2; ++layer) {
+            Image depth_image = layers_.depth[layer], encoded(width, height, 2);
+            for (float& value : depth_image.values()) {
+                if (value == 0.0f) value = std::numeric_limits<float>::infinity();
+            }
+            const auto for_each_pixel = [&](const auto& action) {
+                for (int y = 0; y < height; ++y) {
+                    for (int x = 0; x < width; ++x) action(encoded.pixel(x, y), layers_.normal[layer].pixel(x, y));
+                }
+            };
+            for_each_pixel([&](auto code, auto n) {
+                const glm::vec3 camera_normal(n[0], n[1], n[2]);
+                if (camera_normal == glm::vec3(0.0f)) return;  // nothing there
+                const glm::vec2 e = encode_normal(world_from_camera * camera_normal);
+                code[0] = e.x, code[1] = e.y;
+            });
+            upload(normal, layer, encoded);
+            encoded = read_back(normal, layer, 2);
+            for_each_pixel([&](auto code, auto n) {
+                const glm::vec3 camera_normal = glm::transpose(world_from_camera) * decode_normal({code[0], code[1]});
+                for (int c = 0; c < 3; ++c) n[c] = camera_normal[c];
+            });
+            upload(depth, layer, depth_image);
+            upload(direct, layer, layers_.radiance[layer]);
+        }
+        Image specular(width, height, 4);
+        for (int y = 0; y < height; ++y) {
+            for (int x = 0; x < width; ++x) {
+                for (int c = 0; c < 3; ++c) specular.at(x, y, c) = gloss.f0.at(x, y, c);
+                specular.at(x, y, 3) = gloss.f90.at(x, y);
+            }
+        }
+        upload(planes_.create("specular", GL_RGBA32F, 1), 0, specular);
+        upload(planes_.create("roughness", GL_R32F, 1), 0, gloss.roughness);
+    }
+
+    GlContext& context_;
+    counterpart::Layers layers_;
+    Method method_;
+    Quantities quantities_;
+    Scene scene_;
+    PlaneTextures planes_;
+    ProgramCache programs_;
+    ViewUniforms view_uniforms_;
+    std::vector<std::unique_ptr<Pass>> passes_;
+};
+
+}  // namespace plumb
