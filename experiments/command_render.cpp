@@ -1,4 +1,5 @@
 // `plumbline render`: one view through the OpenGL pipeline, with the time of each pass.
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -12,9 +13,11 @@
 #include "experiments/method_file.h"
 #include "experiments/method_timing.h"
 #include "experiments/scene_finder.h"
+#include "experiments/settling.h"
 #include "experiments/terminal_table.h"
 #include "experiments/view_options.h"
 #include "frames/exr.h"
+#include "rasterizer/gl_error.h"
 #include "rasterizer/pipeline.h"
 #include "scenes/effects.h"
 
@@ -25,6 +28,7 @@ constexpr const char* examples = R"(Examples:
   plumbline render cornell --method two_layers
   plumbline render clutter --method one_layer --set ao.samples=50 --set ao.blur.radius=0 --explain
   plumbline render cornell --path strafe --time 0.5
+  plumbline render clutter-moving --path strafe --time 2 --frames 30 --set ao.temporal.alpha=0.9
   plumbline render colonnade --method mine.toml --backend osmesa --planes total,layer2.depth
   plumbline render cornell --print-method          the method with all its parameters, as TOML)";
 
@@ -34,6 +38,8 @@ struct Options {
     std::vector<std::string> assignments;
     GlBackend backend = GlBackend::automatic;
     std::filesystem::path truth;
+    int frames = 0;  // 0: as many as the method needs to settle
+    double frames_per_second = 30.0;
     int repetitions = 5;
     bool explain = false, print_method = false;
 };
@@ -65,6 +71,26 @@ void print_timing(const Timing& timing, const GlInfo& info) {
                info.software ? "the steady clock after glFinish (software)" : "GPU timer queries");
 }
 
+// The frame at --time after those before it, so that what the method keeps from frame to frame has come about.
+RasterResult render_last_frame(Pipeline& pipeline, const Options& options, const Scene& scene, const Method& method,
+                               const Frame* truth) {
+    const int frames = options.frames > 0 ? options.frames : frames_to_settle(method);
+    if (frames == 1) return pipeline.render(options.view.make_view(scene), nullptr, truth);
+    const auto at = [&](int frame) {
+        const double time = options.view.time - (frames - 1 - frame) / options.frames_per_second;
+        return Moment{options.view.make_view(scene, time), time};
+    };
+    if (truth && (!options.view.path.empty() || std::ranges::any_of(scene.instances, &Instance::moves))) {
+        throw MethodError(fmt::format(
+            "--truth is that of one moment, and {} frames are rendered in which something moves; set --frames to 1",
+            frames));
+    }
+    for (int frame = 0; frame + 1 < frames; ++frame)
+        pipeline.time_passes({.now = at(frame), .previous = at(frame - 1), .next = at(frame + 1), .truth = truth});
+    fmt::print("frame {} of {}, at {:.3f} s\n", frames, frames, options.view.time);
+    return pipeline.render({.now = at(frames - 1), .previous = at(frames - 2), .next = at(frames), .truth = truth});
+}
+
 int render(const Options& options, const CommonOptions& common) {
     Method method = load_method(options.method);
     for (const std::string& assignment : options.assignments) set_method_parameter(method, assignment);
@@ -84,7 +110,7 @@ int render(const Options& options, const CommonOptions& common) {
         print_decisions(pipeline);
     }
     const Frame* given_truth = options.truth.empty() ? nullptr : &truth;
-    RasterResult result = pipeline.render(view, nullptr, given_truth);
+    RasterResult result = render_last_frame(pipeline, options, scene, method, given_truth);
     if (options.repetitions > 0) {
         const ExperimentTiming timing{1, options.repetitions};
         print_timing(time_interleaved({&pipeline}, view, given_truth, timing).front(), context->info());
@@ -116,6 +142,18 @@ void add_render_command(CLI::App& app, const CommonOptions& common, Action& acti
         ->type_name("FILE");
     command->add_flag("--print-method", options->print_method, "Print the method as TOML and stop")->group(group);
     command->add_flag("--explain", options->explain, "Print each effect and pass, on or off, and why");
+    command
+        ->add_option("--frames", options->frames,
+                     "Frames to render, the last of them the one shown; by default as many as what the method keeps "
+                     "from frame to frame needs to settle")
+        ->check(CLI::Range(1, 100000))
+        ->group(group);
+    command
+        ->add_option("--frames-per-second", options->frames_per_second,
+                     "Of those frames, along --path and as objects move")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str()
+        ->group(group);
     command->add_option("--repetitions", options->repetitions, "Frames to time; 0: none")
         ->check(CLI::Range(0, 100000))
         ->capture_default_str();

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "experiments/method_timing.h"
+#include "experiments/settling.h"
 #include "metrics/comparison.h"
 #include "scenes/scene_error.h"
 
@@ -131,6 +132,7 @@ void SceneRun::render_methods(const std::string& plane, RunResults& results) {
     std::vector<std::unique_ptr<Pipeline>> pipelines;
     std::vector<Pipeline*> working;
     std::vector<const Method*> methods;
+    std::vector<int> frames;  // that are rendered, of which the last is measured
     for (const Method& method : experiment_.methods) {
         const Method in_scene = method_in_scene(method, entry_, experiment_.file.string());
         try {
@@ -138,6 +140,7 @@ void SceneRun::render_methods(const std::string& plane, RunResults& results) {
                                                            experiment_.width, experiment_.height));
             working.push_back(pipelines.back().get());
             methods.push_back(&method);
+            frames.push_back(frames_to_settle(in_scene));
         } catch (const std::exception& error) {
             results.failures.push_back({fmt::format("{} / {} / {}", entry_.scene, plane, method.name), error.what()});
         }
@@ -157,7 +160,9 @@ void SceneRun::render_methods(const std::string& plane, RunResults& results) {
         };
         for (std::size_t i = 0; i < working.size(); ++i) {
             try {
-                RasterResult raster = working[i]->render(camera_view, nullptr, &truths->second.full.frame);
+                const Frame* truth = &truths->second.full.frame;
+                for (int frame = 1; frame < frames[i]; ++frame) working[i]->time_passes(camera_view, truth);
+                RasterResult raster = working[i]->render(camera_view, nullptr, truth);
                 images.push_back({view,
                                   plane,
                                   methods[i]->name,

@@ -159,6 +159,35 @@ TEST_P(TemporalFilterTest, AgreesWithItsCounterpartWhileCameraAndObjectsMove) {
     }
 }
 
+TEST_P(TemporalFilterTest, RadiosityIsFilteredByTheSameRule) {
+    TemporalFilterSettings settings{.alpha = 0.85f};
+    Method method = method_with({});
+    method.radiosity.temporal = settings;
+    const TemporalWalk walk(width, height);
+    Pipeline pipeline(
+        context(), walk.scene, method,
+        {.planes = {"irradiance", "radiosity.of_frame", "radiosity.history_weight", "depth", "displacement", "normal"}},
+        width, height);
+    std::optional<counterpart::RenderedFrame> before;
+    for (int i = 0; i < 3; ++i) {
+        const FrameRequest request = walk.frame(i);
+        counterpart::RenderedFrame now{request.now.view, pipeline.render(request).frame};
+        int wrong = 0;
+        for (int y = 0; y < height && before; ++y) {
+            for (int x = 0; x < width; ++x) {
+                // The red channel stands for all.
+                const counterpart::Accumulated expected =
+                    accumulate(now, *before, now.planes.plane("radiosity.of_frame"), before->planes.plane("irradiance"),
+                               settings, x, y);
+                const double scale = std::max(1.0, std::abs(expected.value));
+                wrong += !(std::abs(now.planes.plane("irradiance").at(x, y) - expected.value) < 0.02 * scale);
+            }
+        }
+        EXPECT_LE(wrong, width * height / 1000) << "frame " << i;
+        before = std::move(now);
+    }
+}
+
 TEST_P(TemporalFilterTest, AfterACutTheFrameIsThatOfAFreshPipelineBitForBit) {
     const TemporalWalk walk(width, height);
     Method method = method_with({.alpha = 0.9f});

@@ -1,0 +1,26 @@
+#include "experiments/settling.h"
+
+#include <cmath>
+
+namespace plumb {
+namespace {
+
+constexpr double negligible = 0.01;
+
+// Until `share` to the power of the frames is negligible.
+int frames_of(double share) {
+    return share > 0.0 ? static_cast<int>(std::ceil(std::log(negligible) / std::log(share))) : 0;
+}
+
+}  // namespace
+
+int frames_to_settle(const Method& method) {
+    int frames = 1;
+    // Each waits for what it is fed with.
+    if (method.ao.enabled) frames += frames_of(method.ao.temporal.alpha);
+    if (method.radiosity.enabled) frames += frames_of(method.radiosity.temporal.alpha);
+    if (method.antialias.temporal) frames += frames_of(method.antialias.alpha);
+    return frames;
+}
+
+}  // namespace plumb
