@@ -232,12 +232,16 @@ std::vector<MethodParameter> method_parameters(Method& m) {
         {"probe.size", &m.probe.size, 32, 4096},
         {"probe.every_frame", &m.probe.every_frame},
         {"ao.enabled", &m.ao.enabled},
-        {"ao.estimator", choice(m.ao.estimator, {"mara2016", "g3d_demo", "sao2012", "linear"})},
+        {"ao.estimator", choice(m.ao.estimator, {"mara2016", "g3d_demo", "sao2012", "sao2012_undivided", "alchemy2011",
+                                                 "nielsen2015", "linear"})},
         {"ao.samples", &m.ao.samples, 1, 1000},
         {"ao.layers", &m.ao.layers, 1, 2},
+        {"ao.normals", choice(m.ao.normals, {"interpolated", "face"})},
         {"ao.bias", &m.ao.bias, 0, 1e3},
         {"ao.epsilon", &m.ao.epsilon, 0, 1e3},
-        {"ao.intensity", &m.ao.intensity, 0, 100},
+        {"ao.intensity", &m.ao.intensity, 0, 1e6},
+        {"ao.exponent", &m.ao.exponent, 0, 100},
+        {"ao.spread_pixels", &m.ao.spread_pixels, 0, 4096},
         {"ao.use_mip_chain", &m.ao.use_mip_chain},
         {"ao.mip_offset", &m.ao.mip_offset, 0, 16},
     };
@@ -314,6 +318,14 @@ std::string reason_without_effect(const Method& method, std::string_view name) {
     if (std::string reason = blur_reason(method.radiosity.blur, "radiosity.blur.", name); !reason.empty())
         return reason;
     if (std::string reason = temporal_reason(method, name); !reason.empty()) return reason;
+    const AmbientObscuranceEstimator estimator = method.ao.estimator;
+    if (name == "ao.exponent" && estimator != AmbientObscuranceEstimator::alchemy2011 &&
+        estimator != AmbientObscuranceEstimator::nielsen2015) {
+        return "only ao.estimator = \"alchemy2011\" or \"nielsen2015\" has one";
+    }
+    if (name == "ao.epsilon" && estimator == AmbientObscuranceEstimator::sao2012_undivided) {
+        return "ao.estimator = \"sao2012_undivided\", which divides by nothing";
+    }
     if (!method.ao.use_mip_chain && name == "ao.mip_offset") return "ao.use_mip_chain = false";
     if (!method.radiosity.use_mip_chain && (name == "radiosity.mip_offset" || name == "radiosity.minimum_mip_level")) {
         return "radiosity.use_mip_chain = false";

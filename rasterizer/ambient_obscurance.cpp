@@ -18,6 +18,8 @@ constexpr std::string_view guard_band_reader = "direct";
 
 bool is_blurred(const Method& method) { return method.ao.blur.radius > 0; }
 
+bool reads_normals(const Method& method) { return method.ao.normals == ObscuranceNormals::interpolated; }
+
 // What the temporal filter averages.
 std::string plane_of_frame(const Method& method) { return method.ao.temporal.alpha > 0.0f ? "ao.of_frame" : "ao"; }
 
@@ -40,6 +42,16 @@ void require_sound(const AmbientObscuranceSettings& settings, const Quantities& 
     if (settings.layers < 1 || settings.layers > 2) {
         throw MethodError(fmt::format("ao.layers is {}; use 1 or 2", settings.layers));
     }
+    if (settings.estimator == AmbientObscuranceEstimator::sao2012_undivided &&
+        quantities.ao_falloff == Falloff::cubic) {
+        throw MethodError(
+            "ao.estimator is \"sao2012_undivided\", whose source gives a scale for the quadratic and the hard falloff "
+            "only, and the quantity's ao_falloff is cubic; ask for one of those, or set ao.estimator to \"sao2012\"");
+    }
+    if (settings.spread_pixels < 0) {
+        throw MethodError(fmt::format("ao.spread_pixels is {}; use a number of pixels, or 0 for the projected radius",
+                                      settings.spread_pixels));
+    }
     if (!(settings.epsilon > 0.0f) || !(settings.bias >= 0.0f) || !(settings.intensity >= 0.0f)) {
         throw MethodError(fmt::format("ao.epsilon {} must be positive, ao.bias {} and ao.intensity {} not negative",
                                       settings.epsilon, settings.bias, settings.intensity));
@@ -60,7 +72,7 @@ ShaderDefines shader_defines(const PassResources& resources) {
     require_sound(settings, resources.quantities);
     ShaderDefines defines = SampleSpiral::defines(settings.samples, taps_vary(settings.temporal));
     using enum AmbientObscuranceEstimator;
-    for (const auto estimator : {mara2016, g3d_demo, sao2012, linear}) {
+    for (const auto estimator : {mara2016, g3d_demo, sao2012, sao2012_undivided, alchemy2011, nielsen2015, linear}) {
         defines.emplace_back(in_capitals(to_string(estimator)), std::to_string(static_cast<int>(estimator)));
     }
     const ShaderDefines of_falloff = falloff_defines(resources.quantities.ao_falloff);
@@ -68,6 +80,10 @@ ShaderDefines shader_defines(const PassResources& resources) {
     const int coarsest = coarsest_depth_mip(resources.planes.width(), resources.planes.height());
     const ShaderDefines chosen = {{"ESTIMATOR", in_capitals(to_string(settings.estimator))},
                                   {"LAYERS", std::to_string(settings.layers)},
+                                  {"FACE_NORMALS", settings.normals == ObscuranceNormals::face ? "1" : "0"},
+                                  {"SPREAD_PIXELS", std::to_string(settings.spread_pixels)},
+                                  {"LEAST_SINE", shader_literal(least_hit_sine)},
+                                  {"EXPONENT", shader_literal(settings.exponent)},
                                   {"RADIUS", shader_literal(resources.quantities.ao_radius)},
                                   {"BIAS", shader_literal(settings.bias)},
                                   {"EPSILON", shader_literal(settings.epsilon)},
@@ -93,6 +109,12 @@ std::string_view to_string(AmbientObscuranceEstimator estimator) {
             return "g3d_demo";
         case AmbientObscuranceEstimator::sao2012:
             return "sao2012";
+        case AmbientObscuranceEstimator::sao2012_undivided:
+            return "sao2012_undivided";
+        case AmbientObscuranceEstimator::alchemy2011:
+            return "alchemy2011";
+        case AmbientObscuranceEstimator::nielsen2015:
+            return "nielsen2015";
         case AmbientObscuranceEstimator::linear:
             return "linear";
     }
@@ -101,7 +123,7 @@ std::string_view to_string(AmbientObscuranceEstimator estimator) {
 
 AmbientObscurancePass::AmbientObscurancePass(const PassResources& resources)
     : depth_(resources.planes.get(depth_plane(resources.method))),
-      normal_(resources.planes.get("normal")),
+      normal_(reads_normals(resources.method) ? &resources.planes.get("normal") : nullptr),
       position_(stored_positions(resources)),
       spiral_(resources.context, resources.method.ao.samples),
       draw_(resources.context, resources.programs, "ambient_obscurance.frag", shader_defines(resources)),
@@ -110,7 +132,7 @@ AmbientObscurancePass::AmbientObscurancePass(const PassResources& resources)
 
 void AmbientObscurancePass::execute(const PassFrame&) {
     depth_.bind(0);
-    normal_.bind(1);
+    if (normal_) normal_->bind(1);
     if (position_) position_->bind(stored_position_unit);
     spiral_.bind();
     const InnerArea::Restriction restriction(area_);
@@ -121,12 +143,13 @@ std::vector<PassDeclaration> declare_ambient_obscurance(const Method& method, co
     const std::string depth = depth_plane(method);
     PassDeclaration pass{
         .name = "ambient obscurance",
-        .inputs = {"depth", "normal", depth},
+        .inputs = {"depth", depth},
         .outputs = {output_plane(method)},
         .create = [](const PassResources& resources) { return std::make_unique<AmbientObscurancePass>(resources); },
         .disabled = reason_to_be_off(method),
         .remark = fmt::format("{}, {} taps, {} layer{}", to_string(method.ao.estimator), method.ao.samples,
                               method.ao.layers, method.ao.layers == 1 ? "" : "s")};
+    if (reads_normals(method)) pass.inputs.emplace_back("normal");
     if (method.ao.layers > 1) pass.inputs.push_back(std::string(second_layer_prefix) + depth);
     for (int layer = 0; stores_positions(method) && layer < method.ao.layers; ++layer)
         pass.inputs.push_back(layer_prefix(layer) + "camera_position");

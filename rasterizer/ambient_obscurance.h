@@ -5,28 +5,41 @@
 // point, n its normal, Y a tap's point, v = Y - X, beta the bias, eps the epsilon and A the larger value over the
 // layers:
 //
-//     mara2016   A = g(|v|) max(0, v.n - beta) / sqrt(v.v + eps)          the default: as the paper prints it
-//                visibility = max(0, 1 - intensity sqrt(pi / N sum A))
-//     g3d_demo   A as above, times 1 + 0.35 (max(0, 1.5 n_z) - 1)        n_z: towards the viewer, so it depends on the
-//     view
-//                visibility = max(0, 1 - sqrt(3 / N sum A))^intensity    taps at least 0.75 pixels away; fades in as
-//                the
-//                                                                        radius grows from 3 to 4 pixels
-//     sao2012    A = g(|v|) max(0, v.n - beta) / (v.v + eps)             of dimension 1 / m: intensity is in metres
-//                visibility = (a^0.2 + 1.2 a^4) / 2.2 with a = max(0, 1 - intensity 5 / N sum A)
-//     linear     A as mara2016                                           what a Monte Carlo sum over uniformly
-//                visibility = max(0, 1 - intensity 2 / N sum A)          distributed directions would be
+//     mara2016     A = g(|v|) max(0, v.n - beta) / sqrt(v.v + eps)     the default: as the paper prints it
+//                  visibility = max(0, 1 - intensity sqrt(pi / N sum A))
+//     g3d_demo     A as above, times 1 + 0.35 (max(0, 1.5 n_z) - 1)     n_z: towards the viewer; it depends on the view
+//                  visibility = max(0, 1 - sqrt(3 / N sum A))^intensity taps at least 0.75 pixels away; fades in as the
+//                                                                       radius grows from 3 to 4 pixels
+//     sao2012      A = g(|v|) max(0, v.n - beta) / (v.v + eps)          of dimension 1 / m: intensity is in metres
+//                  visibility = (a^0.2 + 1.2 a^4) / 2.2 with a = max(0, 1 - intensity 5 / N sum A)
+//     sao2012_undivided
+//                  A = c g(|v|) max(0, v.n - beta)                      intensity is in 1 / m; c = 4 for the quadratic
+//                  visibility as sao2012                                falloff, 2 for the hard one; no cubic one
+//     alchemy2011  A = g(|v|) max(0, v.n - beta z) / (v.v + eps)        z: the depth of X, so that beta is metres per
+//                  visibility = max(0, 1 - intensity 2 / N sum A)^K     metre; intensity is in metres
+//     nielsen2015  A = g(|v|) max(0, v.n / |v| - beta z) / (v.v + eps)  beta: per metre; intensity in square metres; M:
+//                  visibility = max(0, 1 - intensity 2 / M sum A)^K     taps with v.n > 0 and g > 0; each layer's tap
+//                                                                       counts for itself; 1 where M = 0
+//     linear       A as mara2016                                        what a Monte Carlo sum over uniformly
+//                  visibility = max(0, 1 - intensity 2 / N sum A)       distributed directions would be
 //
-//   Sources: mara2016: Mara et al. 2016, "Deep G-Buffers for Stable Global Illumination Approximation"; g3d_demo: the
-//   code that its authors ship with G3D; sao2012: McGuire, Mara, Luebke 2012, "Scalable Ambient Obscurance", with its
-//   falloff Falloff::cubic. The falloff is always the quantity's; the paper's is Falloff::quadratic. Good for: contact
-//   shadows of what the layers hold. Bad for: occluders outside the view or behind both layers; taps are even in screen
-//   radius and angle, not in solid angle, so that no estimator here converges to the integral.
+// Sources: mara2016: Mara et al. 2016, "Deep G-Buffers for Stable Global Illumination Approximation"; g3d_demo: the
+// code that its authors ship with G3D; sao2012: McGuire, Mara, Luebke 2012, "Scalable Ambient Obscurance", whose code
+// has four falloffs: A is sao2012 with Falloff::hard, B (recommended) with Falloff::cubic, C is sao2012_undivided with
+// Falloff::quadratic, D with Falloff::hard (it leaves the scale of A, C and D to the intensity, and so do we);
+// alchemy2011: McGuire et al. 2011, "The Alchemy Screen-Space Ambient Obscurance Algorithm", as Nielsen's thesis of
+// 2015 prints it; nielsen2015: what the listings of that thesis do. Both cut hard at the radius (Falloff::hard); the
+// falloff is always the quantity's.
+//   Good for: contact shadows of what the layers hold. Bad for: occluders outside the view or behind both layers; taps
+//   are even in screen radius and angle, not in solid angle, so that no estimator here converges to the integral.
 //
 // Choices where the sources are silent: a tap outside the image (guard band included) and a tap without a surface
 // obscure nothing; background is fully visible, and so is a pixel whose radius covers less than a pixel. With the MIP
 // chain a far tap is the exact point of the pixel that its texel holds (depth_mip_chain.h), not that pixel's depth at
-// the tap's own position as in the source, which lifts taps off slanted surfaces and darkens them.
+// the tap's own position as in the source, which lifts taps off slanted surfaces and darkens them. A face's normal is
+// the cross product of the differences to the points of a pixel beside and a pixel above or below, of each pair the one
+// whose depth is nearer (the source takes derivatives of 2 by 2 pixels, which reach across edges); a pixel without a
+// neighbour on either axis is fully visible.
 #pragma once
 
 #include "rasterizer/bilateral_blur.h"
@@ -35,6 +48,10 @@
 #include "rasterizer/sample_spiral.h"
 
 namespace plumb {
+
+// nielsen2015 divides by the taps above the tangent plane. On a flat surface all lie in it, and rounding would decide
+// which count; those less than 0.06 degrees above it count for nothing, which float depths and encoded normals resolve.
+constexpr float least_hit_sine = 0.001f;
 
 // Writes the plane `ao`, or `ao.unfiltered` where the method blurs it, or else what the temporal filter takes.
 class AmbientObscurancePass final : public Pass {
@@ -45,7 +62,7 @@ public:
 
 private:
     const GlTexture& depth_;
-    const GlTexture& normal_;
+    const GlTexture* normal_;    // where the normals of faces do not serve
     const GlTexture* position_;  // where positions are stored
     SampleSpiral spiral_;
     FullscreenDraw draw_;

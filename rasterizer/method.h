@@ -111,16 +111,30 @@ struct TemporalFilterSettings {
 };
 
 // Which formula turns taps into ambient visibility; each is named after its source (ambient_obscurance.h has them).
-enum class AmbientObscuranceEstimator { mara2016, g3d_demo, sao2012, linear };
+enum class AmbientObscuranceEstimator {
+    mara2016,
+    g3d_demo,
+    sao2012,
+    sao2012_undivided,
+    alchemy2011,
+    nielsen2015,
+    linear
+};
+// Which normal the hemisphere stands on: the surface's own, or that of the face through the neighbouring pixels'
+// points.
+enum class ObscuranceNormals { interpolated, face };
 
 struct AmbientObscuranceSettings {
     bool enabled = true;
     AmbientObscuranceEstimator estimator = AmbientObscuranceEstimator::mara2016;
-    int samples = 16;        // taps per pixel, 1..1000
-    int layers = 2;          // 1 or 2, at most those of the G-buffer
-    float bias = 0.01f;      // metres; hides self-occlusion on flat surfaces
+    int samples = 16;  // taps per pixel, 1..1000
+    int layers = 2;    // 1 or 2, at most those of the G-buffer
+    ObscuranceNormals normals = ObscuranceNormals::interpolated;
+    float bias = 0.01f;      // metres; hides self-occlusion on flat surfaces (of alchemy2011, nielsen2015: see there)
     float epsilon = 0.001f;  // square metres; keeps the division by the tap's distance finite
     float intensity = 1.0f;
+    float exponent = 1.0f;      // of the visibility; alchemy2011 and nielsen2015 only
+    int spread_pixels = 0;      // the taps spread over so many pixels; 0: over the radius as it projects
     bool use_mip_chain = true;  // reads coarser depth for far taps: constant cost over radius
     int mip_offset = 3;         // a tap r' pixels away reads level floor(log2 r') - mip_offset
     BilateralBlurSettings blur = {};

@@ -1,6 +1,7 @@
 // Ambient obscurance on the CPU, from the formulas of rasterizer/ambient_obscurance.h.
 #pragma once
 
+#include <limits>
 #include <numbers>
 
 #include "frames/quantities.h"
@@ -14,15 +15,35 @@ struct Visibility {
     bool ambiguous = false;
 };
 
+// The nearer in depth of a pixel's neighbours along an axis; false where neither shows anything.
+inline bool step_along(const Layers& layers, Pixel pixel, int dx, int dy, glm::dvec3& step) {
+    const auto depth_of = [&](Pixel p) {
+        const double depth = inside(layers, p) ? depth_at(layers, 0, p) : 0.0;
+        return depth > 0.0 ? depth : std::numeric_limits<double>::infinity();
+    };
+    const Pixel ahead{pixel.x + dx, pixel.y + dy}, behind{pixel.x - dx, pixel.y - dy};
+    const double centre = depth_at(layers, 0, pixel);
+    // Differences of floats, as the shader takes them: the two are equal on many a plane.
+    const auto to_ahead = static_cast<float>(std::abs(depth_of(ahead) - centre)),
+               to_behind = static_cast<float>(std::abs(depth_of(behind) - centre));
+    if (std::isinf(to_ahead) && std::isinf(to_behind)) return false;
+    step = to_ahead <= to_behind ? point_at(layers, 0, ahead) - point_at(layers, 0, pixel)
+                                 : point_at(layers, 0, pixel) - point_at(layers, 0, behind);
+    return true;
+}
+
 inline Visibility ambient_visibility(const Layers& layers, const AmbientObscuranceSettings& settings,
                                      const Quantities& quantities, Pixel pixel) {
     using Estimator = AmbientObscuranceEstimator;
+    const Estimator estimator = settings.estimator;
     const double depth = depth_at(layers, 0, pixel), radius = quantities.ao_radius;
-    const double radius_pixels = depth > 0.0 ? layers.view.pixels_per_metre() * radius / depth : 0.0;
+    if (depth == 0.0) return {};
+    const double radius_pixels =
+        settings.spread_pixels > 0 ? settings.spread_pixels : layers.view.pixels_per_metre() * radius / depth;
     if (radius_pixels < 1.0) return {};
 
     Visibility result;
-    const bool demo = settings.estimator == Estimator::g3d_demo;
+    const bool demo = estimator == Estimator::g3d_demo, thesis = estimator == Estimator::nielsen2015;
     const std::vector<Tap> taps = spiral_taps(layers,
                                               {.pixel = pixel,
                                                .radius_pixels = radius_pixels,
@@ -32,26 +53,64 @@ inline Visibility ambient_visibility(const Layers& layers, const AmbientObscuran
                                                .mip_offset = settings.mip_offset,
                                                .minimum_distance = demo ? 0.75 : 0.0},
                                               result.ambiguous);
-    const glm::dvec3 centre = point_at(layers, 0, pixel), normal = vector_at(layers, layers.normal[0], pixel);
+    const glm::dvec3 centre = point_at(layers, 0, pixel);
+    glm::dvec3 normal = vector_at(layers, layers.normal[0], pixel);
+    if (settings.normals == ObscuranceNormals::face) {
+        glm::dvec3 across, up;
+        if (!step_along(layers, pixel, 1, 0, across) || !step_along(layers, pixel, 0, 1, up)) return {};
+        normal = glm::normalize(glm::cross(across, up));
+        if (glm::dot(normal, centre) > 0.0) normal = -normal;
+        // Seen edge-on, a face's side is a matter of rounding.
+        result.ambiguous |= std::abs(glm::dot(normal, glm::normalize(centre))) < 1e-3;
+    }
     double sum = 0.0;
+    int hits = 0;
     for (const Tap& tap : taps) {
         if (!inside(layers, tap.pixel)) continue;
-        double largest = 0.0;
+        double largest = 0.0, both = 0.0;
         for (int layer = 0; layer < settings.layers; ++layer) {
             if (depth_at(layers, layer, tap.source) == 0.0) continue;
             const glm::dvec3 v = point_at(layers, layer, tap.source) - centre;
-            const double vv = glm::dot(v, v), height = std::max(0.0, glm::dot(v, normal) - settings.bias);
-            const double divisor =
-                settings.estimator == Estimator::sao2012 ? vv + settings.epsilon : std::sqrt(vv + settings.epsilon);
-            const double relative_square = vv / (radius * radius);
+            const double vv = glm::dot(v, v), vn = glm::dot(v, normal), relative_square = vv / (radius * radius);
+            const double weight = falloff_of_square(quantities.ao_falloff, relative_square);
             // The hard falloff jumps at the radius.
             result.ambiguous |= quantities.ao_falloff == Falloff::hard && std::abs(relative_square - 1.0) < 1e-5;
-            largest = std::max(largest, falloff_of_square(quantities.ao_falloff, relative_square) * height / divisor);
+            double obscurance = 0.0;
+            switch (estimator) {
+                case Estimator::mara2016:
+                case Estimator::g3d_demo:
+                case Estimator::linear:
+                    obscurance = std::max(0.0, vn - settings.bias) / std::sqrt(vv + settings.epsilon);
+                    break;
+                case Estimator::sao2012:
+                    obscurance = std::max(0.0, vn - settings.bias) / (vv + settings.epsilon);
+                    break;
+                case Estimator::sao2012_undivided:
+                    obscurance = std::max(0.0, vn - settings.bias) * (quantities.ao_falloff == Falloff::hard ? 2 : 4);
+                    break;
+                case Estimator::alchemy2011:
+                    obscurance = std::max(0.0, vn - settings.bias * depth) / (vv + settings.epsilon);
+                    break;
+                case Estimator::nielsen2015: {
+                    if (vv == 0.0) break;
+                    const double sine = vn / std::sqrt(vv);
+                    if (weight > 0.0 && sine > least_hit_sine) {
+                        obscurance = std::max(0.0, sine - settings.bias * depth) / (vv + settings.epsilon);
+                        ++hits;
+                    }
+                    // A tap that is a hit or none according to rounding moves the mean of the others.
+                    result.ambiguous |= std::abs(sine - least_hit_sine) < 1e-5 && weight > 0.0;
+                    result.ambiguous |= std::abs(relative_square - 1.0) < 1e-5;
+                    break;
+                }
+            }
+            largest = std::max(largest, weight * obscurance);
+            both += weight * obscurance;
         }
-        sum += largest;
+        sum += thesis ? both : largest;
     }
-    result.mean = sum / settings.samples;
-    switch (settings.estimator) {
+    result.mean = sum / (thesis ? std::max(hits, 1) : settings.samples);
+    switch (estimator) {
         case Estimator::mara2016:
             result.visibility = 1.0 - settings.intensity * std::sqrt(std::numbers::pi * result.mean);
             break;
@@ -62,11 +121,17 @@ inline Visibility ambient_visibility(const Layers& layers, const AmbientObscuran
             result.visibility = 1.0 + std::clamp(radius_pixels - 3.0, 0.0, 1.0) * (result.visibility - 1.0);
             break;
         }
-        case Estimator::sao2012: {
+        case Estimator::sao2012:
+        case Estimator::sao2012_undivided: {
             const double plain = std::max(0.0, 1.0 - 5.0 * settings.intensity * result.mean);
             result.visibility = (std::pow(plain, 0.2) + 1.2 * std::pow(plain, 4.0)) / 2.2;
             break;
         }
+        case Estimator::alchemy2011:
+        case Estimator::nielsen2015:
+            result.visibility = std::pow(std::max(0.0, 1.0 - 2.0 * settings.intensity * result.mean),
+                                         static_cast<double>(settings.exponent));
+            break;
         case Estimator::linear:
             result.visibility = 1.0 - 2.0 * settings.intensity * result.mean;
             break;

@@ -78,6 +78,19 @@ const std::vector<Case> cases = {
     {"coarse from the first pixel on", {.mip_offset = 0}},
     {"the demo's", {.estimator = Estimator::g3d_demo, .intensity = 1.2f}},
     {"SAO", {.estimator = Estimator::sao2012, .intensity = 0.1f}, Falloff::cubic},
+    {"SAO, falloff A", {.estimator = Estimator::sao2012, .intensity = 0.1f}, Falloff::hard},
+    {"SAO, falloff C", {.estimator = Estimator::sao2012_undivided, .intensity = 0.1f}},
+    {"SAO, falloff D", {.estimator = Estimator::sao2012_undivided, .intensity = 0.1f}, Falloff::hard},
+    {"Alchemy",
+     {.estimator = Estimator::alchemy2011, .bias = 0.005f, .epsilon = 0.01f, .intensity = 0.1f, .exponent = 2.0f},
+     Falloff::hard},
+    {"Nielsen's thesis",
+     {.estimator = Estimator::nielsen2015, .bias = 0.001f, .epsilon = 0.1f, .intensity = 0.05f, .exponent = 1.5f},
+     Falloff::hard},
+    {"Nielsen's thesis, one layer, 30 pixels",
+     {.estimator = Estimator::nielsen2015, .layers = 1, .epsilon = 0.1f, .intensity = 0.05f, .spread_pixels = 30},
+     Falloff::hard},
+    {"normals of faces", {.normals = ObscuranceNormals::face}},
     {"linear", {.estimator = Estimator::linear}},
     {"linear with a hard radius", {.estimator = Estimator::linear}, Falloff::hard},
     {"one tap", {.samples = 1}},
@@ -124,15 +137,20 @@ TEST_P(AmbientObscuranceTest, AgreesWithItsCounterpartInTheCornellBoxThroughTheP
 
 TEST_P(AmbientObscuranceTest, AnInfinitePlaneIsFullyVisible) {
     const std::vector<Patch> floor = {{{-500.0f, -1.0f, -900.0f}, {1000.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 1000.0f}}};
-    for (const bool use_mip_chain : {false, true}) {
-        ScreenSpaceRun run(context(), layers_of_patches(slanted_view(80, 60), floor),
-                           unblurred({.samples = 1000, .use_mip_chain = use_mip_chain}),
+    for (const AmbientObscuranceSettings& settings :
+         {AmbientObscuranceSettings{.samples = 1000, .use_mip_chain = false},
+          AmbientObscuranceSettings{.samples = 1000},
+          AmbientObscuranceSettings{.samples = 1000, .normals = ObscuranceNormals::face},
+          AmbientObscuranceSettings{.estimator = Estimator::nielsen2015, .samples = 1000}}) {
+        ScreenSpaceRun run(context(), layers_of_patches(slanted_view(80, 60), floor), unblurred(settings),
                            ambient_visibility_within(2.0f));
         const Image ao = run.render("ao", 1);
         // Taps lie in the tangent plane up to rounding and to 0.003 degrees of the normal's encoding, 1e-4 m at 2 m:
         // all below the bias of 0.01 m. No other value than 1 is right, with the MIP chain as well: its points are
         // exact.
-        for (const float value : ao.values()) ASSERT_EQ(value, 1.0f) << "MIP chain " << use_mip_chain;
+        for (const float value : ao.values()) {
+            ASSERT_EQ(value, 1.0f) << to_string(settings.estimator) << ", MIP chain " << settings.use_mip_chain;
+        }
     }
 }
 
@@ -232,10 +250,11 @@ TEST_P(AmbientObscuranceTest, TapsFallIntoTheGuardBandWhichIsDrawnOnlyWhereDirec
 }
 
 TEST_P(AmbientObscuranceTest, ParametersOutOfRangeAreRefusedWithTheRemedy) {
-    const auto error_of = [&](const AmbientObscuranceSettings& settings, float radius) -> std::string {
+    const auto error_of = [&](const AmbientObscuranceSettings& settings, float radius,
+                              Falloff falloff = Falloff::quadratic) -> std::string {
         try {
             ScreenSpaceRun run(context(), counterpart::random_layers(slanted_view(8, 8), 1), unblurred(settings),
-                               ambient_visibility_within(radius));
+                               ambient_visibility_within(radius, falloff));
         } catch (const MethodError& error) {
             return error.what();
         }
@@ -245,6 +264,8 @@ TEST_P(AmbientObscuranceTest, ParametersOutOfRangeAreRefusedWithTheRemedy) {
     EXPECT_THAT(error_of({.samples = 0}, 1.0f), testing::HasSubstr("use 1 to 1000"));
     EXPECT_THAT(error_of({.layers = 3}, 1.0f), testing::HasSubstr("use 1 or 2"));
     EXPECT_THAT(error_of({.epsilon = 0.0f}, 1.0f), testing::HasSubstr("must be positive"));
+    EXPECT_THAT(error_of({.estimator = Estimator::sao2012_undivided}, 1.0f, Falloff::cubic),
+                testing::HasSubstr("set ao.estimator to \"sao2012\""));
 }
 
 }  // namespace
