@@ -214,7 +214,7 @@ struct AntialiasSettings {
     bool dilate = true;     // motion is that of the nearest surface among the neighbours: edges move as one
     float alpha = 0.9f;     // most weight of the frames before
     bool clamp = true;      // they are held within the colours of the neighbouring pixels
-    HistoryLookup lookup = HistoryLookup::bilinear;
+    HistoryLookup lookup = HistoryLookup::catmull_rom;
 };
 
 // How the terms become `total` (composite_pass.h): added, or as the demo of Mara et al. shows them.
