@@ -1,8 +1,11 @@
 // `plumbline compare`: how far two images are apart.
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,6 +38,7 @@ struct Options {
     std::filesystem::path test, reference, heat_maps;
     std::string fail_above, fail_below;
     double data_range = 0.0, heat_map_scale = 0.0;
+    std::optional<FlipRange> flip;
     bool json = false;
 };
 
@@ -89,12 +93,22 @@ void write_heat_maps(const Options& options, const FrameComparison& comparison, 
     }
 }
 
+// Whether a file holds what a screen shows, not radiance.
+bool is_displayed(const std::filesystem::path& file) {
+    std::string extension = file.extension().string();
+    std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
+    return extension == ".png" || extension == ".jpg" || extension == ".jpeg" || extension == ".bmp" ||
+           extension == ".tga";
+}
+
 int compare(const Options& options) {
     std::vector<Limit> limits = parse_limits(options.fail_above, true);
     for (const Limit& limit : parse_limits(options.fail_below, false)) limits.push_back(limit);
     const Frame test = read_frame(options.test), reference = read_frame(options.reference);
     ComparisonSettings settings;
     if (options.data_range > 0.0) settings.data_range = options.data_range;
+    const bool both_displayed = is_displayed(options.test) && is_displayed(options.reference);
+    settings.flip = options.flip.value_or(both_displayed ? FlipRange::displayed : FlipRange::by_plane);
     const FrameComparison comparison = compare_frames(test, reference, settings);
     const std::vector<std::string> failed = breaches(comparison, limits);
 
@@ -129,6 +143,17 @@ void add_compare_command(CLI::App& app, const CommonOptions&, Action& action) {
         ->check(CLI::PositiveNumber);
     command->add_option("--data-range", options->data_range, "Peak of PSNR and range of SSIM; per plane by default")
         ->check(CLI::PositiveNumber);
+    command
+        ->add_option(
+            "--flip", options->flip,
+            "FLIP of values that a screen shows (displayed), of radiance over the exposures that the reference "
+            "needs (radiance), by the kind of plane (by-plane), or none. Default: displayed for two PNG or "
+            "JPEG files, by-plane for all others")
+        ->transform(CLI::CheckedTransformer(std::map<std::string, FlipRange>{{"displayed", FlipRange::displayed},
+                                                                             {"radiance", FlipRange::radiance},
+                                                                             {"by-plane", FlipRange::by_plane},
+                                                                             {"none", FlipRange::none}}))
+        ->type_name("RANGE");
     command->add_option("--fail-above", options->fail_above, "Exit with 1 where a measure is above: rmse=0.01,p95=0.05")
         ->type_name("LIMITS");
     command->add_option("--fail-below", options->fail_below, "Exit with 1 where a measure is below: psnr=35,ssim=0.95")

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 
 #include <fmt/format.h>
@@ -29,6 +30,26 @@ int samples_of(const Frame& reference) {
     return error == std::errc() && end == text.data() + text.size() ? samples : 0;
 }
 
+FlipRange flip_range(FlipRange asked, std::string_view plane, const Image& reference) {
+    if (asked != FlipRange::by_plane) return asked;
+    const auto name = last_part(plane);
+    const auto is_one_of = [&](std::initializer_list<std::string_view> names) {
+        return std::ranges::find(names, name) != names.end();
+    };
+    if (is_one_of({"ao", "alpha", "albedo", "confidence"})) return FlipRange::displayed;
+    const bool is_colour = reference.channels() == 1 || reference.channels() == 3;
+    const bool is_geometry =
+        is_one_of({"depth", "normal", "motion", "position", "camera_position", "displacement", "instance"});
+    return is_colour && !is_geometry ? FlipRange::radiance : FlipRange::none;
+}
+
+void add_flip(const Image& test, const Image& reference, FlipRange range, const Image* mask, PlaneComparison& result) {
+    if (range == FlipRange::displayed) result.flip = mean_flip(ldr_flip(test, reference), mask);
+    if (range != FlipRange::radiance || !(value_percentile(reference, 1.0) > 0.0)) return;
+    result.exposures = exposure_range(reference);
+    result.flip = mean_flip(hdr_flip(test, reference, *result.exposures), mask);
+}
+
 std::vector<std::string> planes_to_compare(const Frame& frame) {
     auto names = frame.plane_names();
     std::erase_if(names, [](const std::string& name) { return is_derived_plane(name); });
@@ -46,6 +67,7 @@ PlaneComparison compare(const Image& test, const Image& reference, const Compari
     if (test.width() >= ssim_window && test.height() >= ssim_window) {
         result.ssim = ssim(test, reference, range, mask);
     }
+    add_flip(test, reference, flip_range(settings.flip, plane, reference), mask, result);
     return result;
 }
 
@@ -84,6 +106,9 @@ std::vector<std::pair<std::string, double>> PlaneComparison::measures() const {
         {"relative_mse_falcor", errors.relative_mse_falcor},
         {"psnr", errors.psnr},
         {"ssim", ssim ? ssim->mean : none},
+        {"flip", flip.value_or(none)},
+        {"flip_first_exposure", exposures ? exposures->first : none},
+        {"flip_last_exposure", exposures ? exposures->last : none},
         {"median", errors.median},
         {"p95", errors.percentile_95},
         {"p99", errors.percentile_99},

@@ -9,15 +9,25 @@
 #include <vector>
 
 #include "frames/frame.h"
+#include "metrics/flip.h"
 #include "metrics/pixel_errors.h"
 #include "metrics/referenced_error.h"
 #include "metrics/ssim.h"
 
 namespace plumb {
 
+// Which FLIP is taken.
+enum class FlipRange {
+    none,       // it costs more than all other measures together
+    by_plane,   // displayed for ao, alpha, albedo and confidence, none for geometry, radiance for all others
+    displayed,  // ldr_flip
+    radiance,   // hdr_flip over the reference's exposure_range; none where the reference is black
+};
+
 struct ComparisonSettings {
     // Peak of PSNR and data range of SSIM. Not given: default_data_range of each plane's reference.
     std::optional<double> data_range;
+    FlipRange flip = FlipRange::none;
     ReferencedErrorSettings referenced;  // its mask counts for every measure
 };
 
@@ -30,12 +40,15 @@ struct PlaneComparison {
     std::string plane;
     PixelErrors errors;
     std::optional<Ssim> ssim;                   // none for images smaller than its window
+    std::optional<double> flip;                 // mean
+    std::optional<ExposureRange> exposures;     // of the flip, where it is that of radiance
     std::optional<ReferencedError> referenced;  // where the reference has half-buffers
 
     // All measures in a fixed order under fixed names, the same for every plane; NaN where one does not exist:
-    // mae, mse, rmse, bias, relative_mse_pbrt, relative_mse_tev, relative_mse_falcor, psnr, ssim, median, p95, p99,
-    // maximum, data_range, values, left_out, unbiased_mse, unbiased_mse_lower, unbiased_mse_upper, unbiased_rmse,
-    // reference_noise_mse, noise_ratio, trustworthy (1 or 0).
+    // mae, mse, rmse, bias, relative_mse_pbrt, relative_mse_tev, relative_mse_falcor, psnr, ssim, flip,
+    // flip_first_exposure, flip_last_exposure (stops; of radiance), median, p95, p99, maximum, data_range, values,
+    // left_out, unbiased_mse, unbiased_mse_lower, unbiased_mse_upper, unbiased_rmse, reference_noise_mse, noise_ratio,
+    // trustworthy (1 or 0).
     std::vector<std::pair<std::string, double>> measures() const;
     double measure(std::string_view name) const;  // throws ImageError that lists the names
 

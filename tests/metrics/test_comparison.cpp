@@ -14,11 +14,12 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 TEST(Comparison, MeasuresHaveAFixedOrderAndNamesThatThresholdsCanRelyOn) {
-    EXPECT_THAT(measure_names(),
-                ElementsAre("mae", "mse", "rmse", "bias", "relative_mse_pbrt", "relative_mse_tev",
-                            "relative_mse_falcor", "psnr", "ssim", "median", "p95", "p99", "maximum", "data_range",
-                            "values", "left_out", "unbiased_mse", "unbiased_mse_lower", "unbiased_mse_upper",
-                            "unbiased_rmse", "reference_noise_mse", "noise_ratio", "trustworthy"));
+    EXPECT_THAT(
+        measure_names(),
+        ElementsAre("mae", "mse", "rmse", "bias", "relative_mse_pbrt", "relative_mse_tev", "relative_mse_falcor",
+                    "psnr", "ssim", "flip", "flip_first_exposure", "flip_last_exposure", "median", "p95", "p99",
+                    "maximum", "data_range", "values", "left_out", "unbiased_mse", "unbiased_mse_lower",
+                    "unbiased_mse_upper", "unbiased_rmse", "reference_noise_mse", "noise_ratio", "trustworthy"));
 }
 
 TEST(Comparison, HoldsTheSameNumbersAsTheMeasuresThemselves) {
@@ -32,7 +33,28 @@ TEST(Comparison, HoldsTheSameNumbersAsTheMeasuresThemselves) {
     EXPECT_EQ(comparison.measure("data_range"), 1.0);
     EXPECT_TRUE(std::isnan(comparison.measure("unbiased_mse"))) << "no half-buffers";
     EXPECT_EQ(comparison.best_mse(), comparison.errors.mse);
-    EXPECT_THROW(comparison.measure("flip"), ImageError);
+    EXPECT_TRUE(std::isnan(comparison.measure("flip"))) << "nobody asked for it";
+    EXPECT_THROW(comparison.measure("rsme"), ImageError);
+}
+
+TEST(Comparison, TakesTheFlipThatSuitsThePlane) {
+    const Image test = test::pattern(37, 53, true), reference = test::pattern(37, 53, false);
+    ComparisonSettings settings;
+    settings.flip = FlipRange::by_plane;
+    const PlaneComparison displayed = compare_planes(test, reference, settings, "layer2.albedo");
+    EXPECT_EQ(displayed.measure("flip"), mean_flip(ldr_flip(test, reference)));
+    EXPECT_TRUE(std::isnan(displayed.measure("flip_first_exposure")));
+
+    const PlaneComparison radiance = compare_planes(test, reference, settings, "indirect");
+    const ExposureRange range = exposure_range(reference);
+    EXPECT_EQ(radiance.measure("flip"), mean_flip(hdr_flip(test, reference, range)));
+    EXPECT_EQ(radiance.measure("flip_first_exposure"), range.first);
+    EXPECT_EQ(radiance.measure("flip_last_exposure"), range.last);
+
+    EXPECT_FALSE(compare_planes(test, reference, settings, "normal").flip) << "geometry has no colour";
+    EXPECT_FALSE(compare_planes(test, Image(53, 37, 3), settings, "indirect").flip) << "no exposure shows black";
+    settings.flip = FlipRange::displayed;
+    EXPECT_EQ(compare_planes(test, reference, settings, "indirect").flip, displayed.flip);
 }
 
 TEST(Comparison, DataRangeIgnoresALampAndStaysPositiveInTheDark) {
