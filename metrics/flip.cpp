@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 #include <vector>
@@ -13,73 +14,18 @@
 
 #include "frames/image_error.h"
 #include "frames/parallel.h"
+#include "metrics/flip_colour.h"
 #include "metrics/shape.h"
 
 namespace plumb {
 namespace {
 
-constexpr double colour_exponent = 0.7;                     // q_c
-constexpr double knee = 0.4, value_at_knee = 0.95;          // p_c, p_t
 constexpr double feature_width = 0.082;                     // w, degrees
 constexpr double feature_exponent = 0.5;                    // q_f
 constexpr int rows_at_once = 64;                            // of a block that one thread filters
 constexpr double nearly_white = 0.85;                       // tone-mapped
 constexpr std::array aces = {0.6 * 0.6 * 2.51, 0.6 * 0.03,  // (x (a x + b)) / (x (c x + d) + e), exposed by 0.6
                              0.6 * 0.6 * 2.43, 0.6 * 0.59, 0.14};
-
-// Of Rec.709 primaries and D65, in the fractions that the source prints; columns are red, green, blue.
-const glm::dmat3 xyz_from_rgb(10135552.0 / 24577794.0, 2613072.0 / 12288897.0, 1425312.0 / 73733382.0,  //
-                              8788810.0 / 24577794.0, 8788810.0 / 12288897.0, 8788810.0 / 73733382.0,   //
-                              4435075.0 / 24577794.0, 887015.0 / 12288897.0, 70074185.0 / 73733382.0);
-const glm::dvec3 white = xyz_from_rgb * glm::dvec3(1.0);
-
-// RGB to XYZ over the white point's, and back.
-const glm::mat3 relative_xyz_from_rgb(glm::dmat3(1.0 / white.x, 0.0, 0.0, 0.0, 1.0 / white.y, 0.0, 0.0, 0.0,
-                                                 1.0 / white.z) *
-                                      xyz_from_rgb);
-const glm::mat3 rgb_from_relative_xyz(glm::inverse(glm::dmat3(relative_xyz_from_rgb)));
-
-// The opponent space YCxCz: CIELAB without its cube roots, in which light can be blurred.
-glm::vec3 opponent_from_rgb(const glm::vec3& rgb) {
-    const glm::vec3 xyz = relative_xyz_from_rgb * rgb;
-    return {116.0f * xyz.y - 16.0f, 500.0f * (xyz.x - xyz.y), 200.0f * (xyz.y - xyz.z)};
-}
-
-glm::vec3 rgb_from_opponent(const glm::vec3& opponent) {
-    const float y = (opponent.x + 16.0f) / 116.0f;
-    return rgb_from_relative_xyz * glm::vec3(y + opponent.y / 500.0f, y, y - opponent.z / 200.0f);
-}
-
-float lab_curve(float t) {
-    constexpr float edge = 6.0f / 29.0f;
-    return t > edge * edge * edge ? std::cbrt(t) : t / (3.0f * edge * edge) + 4.0f / 29.0f;
-}
-
-// CIELAB with colour differences that shrink with the lightness, as they do to the eye (Hunt).
-glm::vec3 hunt_lab_from_rgb(const glm::vec3& rgb) {
-    const glm::vec3 xyz = relative_xyz_from_rgb * rgb;
-    const float x = lab_curve(xyz.x), y = lab_curve(xyz.y), z = lab_curve(xyz.z);
-    const float lightness = 116.0f * y - 16.0f;
-    return {lightness, 0.01f * lightness * 500.0f * (x - y), 0.01f * lightness * 200.0f * (y - z)};
-}
-
-float hyab(const glm::vec3& a, const glm::vec3& b) {
-    const glm::vec3 d = a - b;
-    return std::abs(d.x) + std::sqrt(d.y * d.y + d.z * d.z);
-}
-
-// The largest difference of two colours, which stands for 1.
-const auto largest_colour_difference = static_cast<float>(
-    std::pow(hyab(hunt_lab_from_rgb({0.0f, 1.0f, 0.0f}), hunt_lab_from_rgb({0.0f, 0.0f, 1.0f})), colour_exponent));
-
-float colour_difference(const glm::vec3& test, const glm::vec3& reference) {
-    const float distance =
-        std::pow(hyab(hunt_lab_from_rgb(test), hunt_lab_from_rgb(reference)), static_cast<float>(colour_exponent));
-    const auto bend = static_cast<float>(knee) * largest_colour_difference;
-    constexpr auto there = static_cast<float>(value_at_knee);
-    return distance < bend ? distance * there / bend
-                           : there + (distance - bend) / (largest_colour_difference - bend) * (1.0f - there);
-}
 
 // Weights for offsets -radius..radius.
 struct Kernel {
@@ -179,9 +125,14 @@ public:
         for (Rows& half : half_) half.resize(width, around);
         for (int i = 0; i < around; ++i) {
             const int y = std::clamp(begin - reach_ + i, 0, height - 1);
-            for (int x = -reach_; x < width + reach_; ++x) {
-                const glm::vec3 colour = opponent_from_rgb(colour_at(std::clamp(x, 0, width - 1), y));
+            for (int x = 0; x < width; ++x) {
+                const glm::vec3 colour = opponent_from_rgb(colour_at(x, y));
                 for (int c = 0; c < 3; ++c) opponent_[c].row(0)[x + reach_] = colour[c];
+            }
+            for (Rows& channel : opponent_) {
+                float* const row = channel.row(0);
+                std::fill_n(row, reach_, row[reach_]);
+                std::fill_n(row + reach_ + width, reach_, row[reach_ + width - 1]);
             }
             float* const lightness = opponent_[0].row(0);
             along_row(filters.lightness[0], lightness, half_[lightness_half].row(i));
@@ -248,25 +199,36 @@ private:
     std::array<std::vector<float>, 4> columns_;
 };
 
-bool is_finite(const Image& image, int x, int y) {
-    return std::ranges::all_of(image.pixel(x, y), [](float value) { return std::isfinite(value); });
+// 1 where every value of a pixel is finite, in both images.
+std::vector<std::uint8_t> finite_pixels(const Image& test, const Image& reference) {
+    std::vector<std::uint8_t> finite(test.pixel_count(), 1);
+    const auto channels = static_cast<std::size_t>(test.channels());
+    for (std::size_t i = 0; i < test.values().size(); ++i) {
+        if (!std::isfinite(test.values()[i]) || !std::isfinite(reference.values()[i])) finite[i / channels] = 0;
+    }
+    return finite;
 }
 
-glm::vec3 colour_of(const Image& image, int x, int y) {
-    const auto pixel = image.pixel(x, y);
-    return image.channels() == 1 ? glm::vec3(pixel[0]) : glm::vec3(pixel[0], pixel[1], pixel[2]);
+glm::vec3 colour_of(const Image& image, std::size_t pixel) {
+    const auto values = image.values();
+    return image.channels() == 1 ? glm::vec3(values[pixel])
+                                 : glm::vec3(values[3 * pixel], values[3 * pixel + 1], values[3 * pixel + 2]);
 }
 
 // FLIP of both images as `shown(colour)` makes them, 0 to 1; the larger of it and what `flip` holds stays there.
 template <typename Shown>
-void raise_to_flip(const Image& test, const Image& reference, const Filters& filters, const Shown& shown, Image& flip) {
+void raise_to_flip(const Image& test, const Image& reference, const std::vector<std::uint8_t>& finite,
+                   const Filters& filters, const Shown& shown, Image& flip) {
     const int width = test.width(), height = test.height();
     parallel_for((height + rows_at_once - 1) / rows_at_once, [&](int block) {
         const int begin = block * rows_at_once, end = std::min(height, begin + rows_at_once);
+        const auto index = [width](int x, int y) {
+            return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+        };
         const auto colour_in = [&](const Image& image) {
             return [&](int x, int y) {
-                const bool finite = is_finite(test, x, y) && is_finite(reference, x, y);
-                return finite ? glm::clamp(shown(colour_of(image, x, y)), 0.0f, 1.0f) : glm::vec3(0.0f);
+                const std::size_t pixel = index(x, y);
+                return finite[pixel] ? glm::clamp(shown(colour_of(image, pixel)), 0.0f, 1.0f) : glm::vec3(0.0f);
             };
         };
         ImageBlock of_test, of_reference;
@@ -282,7 +244,7 @@ void raise_to_flip(const Image& test, const Image& reference, const Filters& fil
             for (int x = 0; x < width; ++x) {
                 const auto i = static_cast<std::size_t>(x);
                 float& value = flip.at(x, y);
-                if (!is_finite(test, x, y) || !is_finite(reference, x, y)) {
+                if (!finite[index(x, y)]) {
                     value = std::numeric_limits<float>::quiet_NaN();
                     continue;
                 }
@@ -329,21 +291,19 @@ Image ldr_flip(const Image& test, const Image& reference, double pixels_per_degr
     require_comparable(test, reference, pixels_per_degree);
     Image flip(test.width(), test.height(), 1);
     raise_to_flip(
-        test, reference, Filters(pixels_per_degree), [](const glm::vec3& colour) { return colour; }, flip);
+        test, reference, finite_pixels(test, reference), Filters(pixels_per_degree),
+        [](const glm::vec3& colour) { return colour; }, flip);
     return flip;
 }
 
 ExposureRange exposure_range(const Image& reference) {
     require_comparable(reference, reference, flip_pixels_per_degree);
     std::vector<float> luminances;
-    for (int y = 0; y < reference.height(); ++y) {
-        for (int x = 0; x < reference.width(); ++x) {
-            if (!is_finite(reference, x, y)) continue;
-            const auto luminance =
-                static_cast<float>(glm::dot(glm::dvec3(colour_of(reference, x, y)),
-                                            glm::dvec3(xyz_from_rgb[0].y, xyz_from_rgb[1].y, xyz_from_rgb[2].y)));
-            if (luminance > 0.0f) luminances.push_back(luminance);
-        }
+    const std::vector<std::uint8_t> finite = finite_pixels(reference, reference);
+    for (std::size_t i = 0; i < finite.size(); ++i) {
+        if (!finite[i]) continue;
+        const auto value = static_cast<float>(luminance(colour_of(reference, i)));
+        if (value > 0.0f) luminances.push_back(value);
     }
     if (luminances.empty()) {
         throw ImageError(
@@ -367,12 +327,13 @@ Image hdr_flip(const Image& test, const Image& reference, const ExposureRange& e
                                      exposures.count, exposures.first, exposures.last));
     }
     const Filters filters(pixels_per_degree);
+    const std::vector<std::uint8_t> finite = finite_pixels(test, reference);
     Image flip(test.width(), test.height(), 1);
     for (int i = 0; i < exposures.count; ++i) {
         const double share = exposures.count == 1 ? 0.0 : static_cast<double>(i) / (exposures.count - 1);
         const auto factor = static_cast<float>(std::exp2(exposures.first + share * (exposures.last - exposures.first)));
         raise_to_flip(
-            test, reference, filters,
+            test, reference, finite, filters,
             [factor](const glm::vec3& colour) {
                 return glm::vec3(tone_mapped(factor * colour.x), tone_mapped(factor * colour.y),
                                  tone_mapped(factor * colour.z));
