@@ -77,6 +77,11 @@ const GlTexture& output_of(const PassResources& resources, const BilateralBlurRe
     return resources.planes.create(request.output, format, resources.layers_of(request.output));
 }
 
+const GlTexture& half_blurred(const PassResources& resources, GLenum format) {
+    const std::string name = fmt::format("half blurred {:#x}", format);
+    return resources.planes.has(name) ? resources.planes.get(name) : resources.planes.create(name, format, 1);
+}
+
 }  // namespace
 
 InnerArea::InnerArea(const PassResources& resources, glm::ivec2 reach, std::string_view read_beyond)
@@ -101,7 +106,7 @@ BilateralBlurPass::BilateralBlurPass(const PassResources& resources, const Bilat
     : noisy_(resources.planes.get(request.input)),
       depth_(resources.planes.get("depth")),
       layer_(request.layer),
-      half_blurred_(GlTexture::array(resources.context, noisy_.format(), noisy_.width(), noisy_.height(), 1)),
+      half_blurred_(half_blurred(resources, noisy_.format())),
       along_rows_(resources.context, resources.programs, "bilateral_blur.frag", defines_along("ivec2(1, 0)", request)),
       along_columns_(resources.context, resources.programs, "bilateral_blur.frag",
                      defines_along("ivec2(0, 1)", request)),

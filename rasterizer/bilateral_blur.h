@@ -90,7 +90,7 @@ private:
     const GlTexture* normal_ = nullptr;    // where the kind looks at normals
     const GlTexture* position_ = nullptr;  // and at positions, and they are stored
     int layer_;
-    GlTexture half_blurred_;
+    const GlTexture& half_blurred_;  // all blurs of a pipeline share one for each format
     FullscreenDraw along_rows_, along_columns_;
     GlFramebuffer half_blurred_target_, target_;
     InnerArea area_of_rows_, area_;

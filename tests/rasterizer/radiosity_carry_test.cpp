@@ -244,6 +244,31 @@ TEST_P(RadiosityCarryTest, FindsPointsAgainThatTheCameraAndObjectsMoved) {
     EXPECT_GT(moving, 50) << "found again on the block";
 }
 
+// What turns into view was in the guard band before.
+TEST_P(RadiosityCarryTest, TheGuardBandIsCarriedOnToo) {
+    const Scene scene = sliding_block();
+    const auto seen_from = [](float target) {
+        return Moment{View(Camera::look_at("turning", {0.0f, 1.2f, 3.0f}, {target, 0.6f, -0.4f}, 0.5f), width, height)};
+    };
+    const Moment then = seen_from(0.0f), now = seen_from(0.3f);
+    const auto carried_at_the_border = [&](int guard_band) {
+        Method method = exact({.carry = true, .carry_from = 0.2f, .carry_to = 0.3f});  // slants do not matter here
+        method.gbuffer.guard_band = guard_band;
+        Pipeline pipeline(context(), scene, method, wanted({"depth", "direct", "irradiance", "radiosity.sent"}), width,
+                          height);
+        pipeline.render({.now = then});
+        const Frame after = pipeline.render({.now = now, .previous = then}).frame;
+        int found = 0;
+        for (int y = 0; y < height; ++y) {
+            for (int x = width - 8; x < width; ++x)
+                found += colour_at(after.plane("radiosity.sent"), x, y) != colour_at(after.plane("direct"), x, y);
+        }
+        return found;
+    };
+    EXPECT_EQ(carried_at_the_border(0), 0);
+    EXPECT_GT(carried_at_the_border(24), 8 * height / 4) << "of eight columns";
+}
+
 // What hides in the second layer of one frame comes to light in the next, and keeps the light that it gathered there.
 TEST_P(RadiosityCarryTest, AGatheredSecondLayerIsFoundAgainWhenItComesToLight) {
     const Scene scene = sliding_block();
