@@ -67,6 +67,10 @@ PlaneComparison compare(const Image& test, const Image& reference, const Compari
     if (test.width() >= ssim_window && test.height() >= ssim_window) {
         result.ssim = ssim(test, reference, range, mask);
     }
+    // The coarser scales have no mask.
+    if (!mask && std::min(test.width(), test.height()) >= multi_scale_ssim_least_side) {
+        result.multi_scale_ssim = multi_scale_ssim(test, reference, range);
+    }
     add_flip(test, reference, flip_range(settings.flip, plane, reference), mask, result);
     return result;
 }
@@ -106,6 +110,7 @@ std::vector<std::pair<std::string, double>> PlaneComparison::measures() const {
         {"relative_mse_falcor", errors.relative_mse_falcor},
         {"psnr", errors.psnr},
         {"ssim", ssim ? ssim->mean : none},
+        {"ms_ssim", multi_scale_ssim.value_or(none)},
         {"flip", flip.value_or(none)},
         {"flip_first_exposure", exposures ? exposures->first : none},
         {"flip_last_exposure", exposures ? exposures->last : none},

@@ -40,12 +40,13 @@ struct PlaneComparison {
     std::string plane;
     PixelErrors errors;
     std::optional<Ssim> ssim;                   // none for images smaller than its window
+    std::optional<double> multi_scale_ssim;     // none for images smaller than its windows at the coarsest scale
     std::optional<double> flip;                 // mean
     std::optional<ExposureRange> exposures;     // of the flip, where it is that of radiance
     std::optional<ReferencedError> referenced;  // where the reference has half-buffers
 
     // All measures in a fixed order under fixed names, the same for every plane; NaN where one does not exist:
-    // mae, mse, rmse, bias, relative_mse_pbrt, relative_mse_tev, relative_mse_falcor, psnr, ssim, flip,
+    // mae, mse, rmse, bias, relative_mse_pbrt, relative_mse_tev, relative_mse_falcor, psnr, ssim, ms_ssim, flip,
     // flip_first_exposure, flip_last_exposure (stops; of radiance), median, p95, p99, maximum, data_range, values,
     // left_out, unbiased_mse, unbiased_mse_lower, unbiased_mse_upper, unbiased_rmse, reference_noise_mse, noise_ratio,
     // trustworthy (1 or 0).

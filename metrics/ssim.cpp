@@ -20,6 +20,7 @@ namespace {
 constexpr int radius = ssim_window / 2;
 constexpr std::size_t margins = ssim_window - 1;  // left and right together
 using Kernel = std::array<double, ssim_window>;
+constexpr std::array scale_weights = {0.0448, 0.2856, 0.3001, 0.2363, 0.1333};
 
 Kernel gaussian() {
     constexpr double sigma = 1.5;
@@ -55,6 +56,8 @@ struct Channel {
     std::vector<float> values;
 };
 
+enum class SsimPart { all, contrast_and_structure };
+
 // Computes single rows of SSIM; owns the scratch memory of one thread. Filters down the columns first, which needs no
 // more than one row of the five moments at a time.
 class RowFilter {
@@ -65,15 +68,16 @@ public:
         for (auto& row : moments_) row.resize(static_cast<std::size_t>(width));
     }
 
-    void run(const Channel& test, const Channel& reference, int y, std::span<double> result) {
+    void run(const Channel& test, const Channel& reference, int y, SsimPart part, std::span<double> result) {
         filter_columns(test, reference, y);
         for (int m = 0; m < 5; ++m) filter_row(columns_[m], moments_[m]);
+        const bool all = part == SsimPart::all;
         for (std::size_t x = 0; x < result.size(); ++x) {
             const double v = moments_[0][x], r = moments_[1][x];
             const double variance_v = moments_[2][x] - v * v, variance_r = moments_[3][x] - r * r;
             const double covariance = moments_[4][x] - v * r;
-            result[x] = (2.0 * v * r + c1_) * (2.0 * covariance + c2_) /
-                        ((v * v + r * r + c1_) * (variance_v + variance_r + c2_));
+            const double above = 2.0 * covariance + c2_, below = variance_v + variance_r + c2_;
+            result[x] = all ? (2.0 * v * r + c1_) * above / ((v * v + r * r + c1_) * below) : above / below;
         }
     }
 
@@ -135,7 +139,7 @@ void check(const Image& test, const Image& reference, double data_range) {
 }
 
 // Calls use(channel, y, values of the row) for every row of every channel, from many threads.
-void for_each_row(const Image& test, const Image& reference, double data_range,
+void for_each_row(const Image& test, const Image& reference, double data_range, SsimPart part,
                   const std::function<void(int, int, std::span<const double>)>& use) {
     for (int c = 0; c < test.channels(); ++c) {
         const Channel v(test, c), r(reference, c);
@@ -145,25 +149,21 @@ void for_each_row(const Image& test, const Image& reference, double data_range,
             std::vector<double> row(static_cast<std::size_t>(test.width()));
             const int end = std::min(test.height(), (block + 1) * rows_at_once);
             for (int y = block * rows_at_once; y < end; ++y) {
-                filter.run(v, r, y, row);
+                filter.run(v, r, y, part, row);
                 use(c, y, row);
             }
         });
     }
 }
 
-}  // namespace
-
-Ssim ssim(const Image& test, const Image& reference, double data_range, const Image* mask) {
-    check(test, reference, data_range);
-    if (mask) require_mask_fits(*mask, test);
+Ssim mean_over_windows(const Image& test, const Image& reference, double data_range, SsimPart part, const Image* mask) {
     struct Row {
         double sum = 0;
         std::size_t windows = 0, non_finite = 0;
     };
     // Summed per row first and in order of the rows afterwards: the same bits whatever the number of threads.
     std::vector<Row> rows(static_cast<std::size_t>(test.height()) * static_cast<std::size_t>(test.channels()));
-    for_each_row(test, reference, data_range, [&](int c, int y, std::span<const double> values) {
+    for_each_row(test, reference, data_range, part, [&](int c, int y, std::span<const double> values) {
         if (y < radius || y >= test.height() - radius) return;
         Row& row =
             rows[static_cast<std::size_t>(c) * static_cast<std::size_t>(test.height()) + static_cast<std::size_t>(y)];
@@ -190,10 +190,50 @@ Ssim ssim(const Image& test, const Image& reference, double data_range, const Im
     return result;
 }
 
+// Means of two by two pixels; an odd last row or column is dropped.
+Image half_size(const Image& image) {
+    Image half(image.width() / 2, image.height() / 2, image.channels());
+    for (int y = 0; y < half.height(); ++y) {
+        for (int x = 0; x < half.width(); ++x) {
+            for (int c = 0; c < half.channels(); ++c) {
+                half.at(x, y, c) = 0.25f * (image.at(2 * x, 2 * y, c) + image.at(2 * x + 1, 2 * y, c) +
+                                            image.at(2 * x, 2 * y + 1, c) + image.at(2 * x + 1, 2 * y + 1, c));
+            }
+        }
+    }
+    return half;
+}
+
+}  // namespace
+
+Ssim ssim(const Image& test, const Image& reference, double data_range, const Image* mask) {
+    check(test, reference, data_range);
+    if (mask) require_mask_fits(*mask, test);
+    return mean_over_windows(test, reference, data_range, SsimPart::all, mask);
+}
+
+double multi_scale_ssim(const Image& test, const Image& reference, double data_range) {
+    check(test, reference, data_range);
+    if (std::min(test.width(), test.height()) < multi_scale_ssim_least_side) {
+        throw ImageError(fmt::format("multi-scale SSIM needs images of at least {0}x{0} pixels, not {1}x{2}",
+                                     multi_scale_ssim_least_side, test.width(), test.height()));
+    }
+    Image v = test, r = reference;
+    double product = 1.0;
+    for (std::size_t scale = 0; scale < scale_weights.size(); ++scale) {
+        const bool last = scale + 1 == scale_weights.size();
+        const SsimPart part = last ? SsimPart::all : SsimPart::contrast_and_structure;
+        product *=
+            std::pow(std::max(0.0, mean_over_windows(v, r, data_range, part, nullptr).mean), scale_weights[scale]);
+        if (!last) v = half_size(v), r = half_size(r);
+    }
+    return product;
+}
+
 Image ssim_map(const Image& test, const Image& reference, double data_range) {
     check(test, reference, data_range);
     Image map(test.width(), test.height(), test.channels());
-    for_each_row(test, reference, data_range, [&](int c, int y, std::span<const double> values) {
+    for_each_row(test, reference, data_range, SsimPart::all, [&](int c, int y, std::span<const double> values) {
         for (int x = 0; x < test.width(); ++x) {
             map.at(x, y, c) = static_cast<float>(values[static_cast<std::size_t>(x)]);
         }

@@ -33,7 +33,21 @@ struct Ssim {
 // image is smaller than the window or the data range is not positive.
 Ssim ssim(const Image& test, const Image& reference, double data_range, const Image* mask = nullptr);
 
-// The same at every pixel and channel, borders included; NaN where the window holds a value that is not finite.
+// Multi-scale SSIM: contrast and structure (the second factor above) at five scales, each half as large as the one
+// before (means of 2x2 pixels), and brightness at the coarsest,
+//
+//   MS-SSIM = SSIM_5^w_5  prod_(j < 5) (mean contrast and structure)_j^w_j,   w = 0.0448, 0.2856, 0.3001, 0.2363,
+//   0.1333
+//
+// with each mean taken as SSIM's; a negative mean counts as 0.
+//   Source: Wang, Simoncelli, Bovik 2003, "Multi-scale Structural Similarity for Image Quality Assessment". Good for:
+//   structure seen from several distances. Bad for: as SSIM.
+// NaN where a scale has no finite window. Throws ImageError as ssim does, and for images whose smaller side is shorter
+// than 176 pixels: at the coarsest scale a window would not fit.
+inline constexpr int multi_scale_ssim_least_side = ssim_window * 16;
+double multi_scale_ssim(const Image& test, const Image& reference, double data_range);
+
+// SSIM at every pixel and channel, borders included; NaN where the window holds a value that is not finite.
 Image ssim_map(const Image& test, const Image& reference, double data_range);
 
 }  // namespace plumb

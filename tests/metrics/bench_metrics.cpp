@@ -31,6 +31,9 @@ const Image& reference_image() {
 void run_ssim(benchmark::State& state) {
     for (auto _ : state) benchmark::DoNotOptimize(ssim(test_image(), reference_image(), 1.0).mean);
 }
+void run_multi_scale_ssim(benchmark::State& state) {
+    for (auto _ : state) benchmark::DoNotOptimize(multi_scale_ssim(test_image(), reference_image(), 1.0));
+}
 void run_pixel_errors(benchmark::State& state) {
     for (auto _ : state) benchmark::DoNotOptimize(pixel_errors(test_image(), reference_image(), 1.0).mse);
 }
@@ -54,6 +57,7 @@ void run_hdr_flip(benchmark::State& state) {
 BENCHMARK(run_ldr_flip)->Name("LDR-FLIP, 1920x1080x3")->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(run_hdr_flip)->Name("HDR-FLIP, 1920x1080x3")->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(run_ssim)->Name("ssim, 1920x1080x3")->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(run_multi_scale_ssim)->Name("multi-scale SSIM, 1920x1080x3")->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(run_pixel_errors)->Name("pixel errors, 1920x1080x3")->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(run_referenced_error)->Name("referenced error, 1920x1080x3")->Unit(benchmark::kMillisecond)->UseRealTime();
 

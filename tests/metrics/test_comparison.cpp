@@ -17,8 +17,8 @@ TEST(Comparison, MeasuresHaveAFixedOrderAndNamesThatThresholdsCanRelyOn) {
     EXPECT_THAT(
         measure_names(),
         ElementsAre("mae", "mse", "rmse", "bias", "relative_mse_pbrt", "relative_mse_tev", "relative_mse_falcor",
-                    "psnr", "ssim", "flip", "flip_first_exposure", "flip_last_exposure", "median", "p95", "p99",
-                    "maximum", "data_range", "values", "left_out", "unbiased_mse", "unbiased_mse_lower",
+                    "psnr", "ssim", "ms_ssim", "flip", "flip_first_exposure", "flip_last_exposure", "median", "p95",
+                    "p99", "maximum", "data_range", "values", "left_out", "unbiased_mse", "unbiased_mse_lower",
                     "unbiased_mse_upper", "unbiased_rmse", "reference_noise_mse", "noise_ratio", "trustworthy"));
 }
 

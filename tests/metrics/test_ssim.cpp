@@ -1,3 +1,4 @@
+#include <array>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -150,6 +151,83 @@ TEST(Ssim, AMaskChoosesWindowCentres) {
                 0.5 * (window_ssim(test, reference, 12, 17, 0, 1.0) + window_ssim(test, reference, 20, 9, 0, 1.0)),
                 order_of_summation);
     EXPECT_TRUE(std::isnan(ssim(test, reference, 1.0, &(mask = Image(30, 30, 1))).mean));
+}
+
+// As the formula stands: scales one after the other, every window by itself.
+double multi_scale_by_formula(Image v, Image r, double range) {
+    const std::array weights = {0.0448, 0.2856, 0.3001, 0.2363, 0.1333};
+    double product = 1.0;
+    for (int scale = 0; scale < 5; ++scale) {
+        double sum = 0.0;
+        int windows = 0;
+        for (int y = 5; y < v.height() - 5; ++y) {
+            for (int x = 5; x < v.width() - 5; ++x, ++windows) {
+                double total = 0, mean_v = 0, mean_r = 0, square_v = 0, square_r = 0, both = 0;
+                for (int dy = -5; dy <= 5; ++dy) {
+                    for (int dx = -5; dx <= 5; ++dx) {
+                        const double w = std::exp(-(dx * dx + dy * dy) / 4.5), a = v.at(x + dx, y + dy),
+                                     b = r.at(x + dx, y + dy);
+                        total += w, mean_v += w * a, mean_r += w * b;
+                        square_v += w * a * a, square_r += w * b * b, both += w * a * b;
+                    }
+                }
+                mean_v /= total, mean_r /= total;
+                const double c1 = std::pow(0.01 * range, 2), c2 = std::pow(0.03 * range, 2);
+                const double contrast = (2 * (both / total - mean_v * mean_r) + c2) /
+                                        (square_v / total - mean_v * mean_v + square_r / total - mean_r * mean_r + c2);
+                const double brightness = (2 * mean_v * mean_r + c1) / (mean_v * mean_v + mean_r * mean_r + c1);
+                sum += scale == 4 ? brightness * contrast : contrast;
+            }
+        }
+        product *= std::pow(sum / windows, weights[scale]);
+        const auto halve = [](const Image& image) {
+            Image half(image.width() / 2, image.height() / 2, 1);
+            for (int y = 0; y < half.height(); ++y) {
+                for (int x = 0; x < half.width(); ++x) {
+                    half.at(x, y) = 0.25f * (image.at(2 * x, 2 * y) + image.at(2 * x + 1, 2 * y) +
+                                             image.at(2 * x, 2 * y + 1) + image.at(2 * x + 1, 2 * y + 1));
+                }
+            }
+            return half;
+        };
+        v = halve(v), r = halve(r);
+    }
+    return product;
+}
+
+TEST(MultiScaleSsim, AgreesWithItsFormula) {
+    // Odd sizes, so that rows and columns are dropped on the way down.
+    Image test(187, 181, 1), reference(187, 181, 1);
+    for (int y = 0; y < 181; ++y) {
+        for (int x = 0; x < 187; ++x) {
+            reference.at(x, y) = 0.5f + 0.4f * std::sin(0.11f * static_cast<float>(x + 2 * y));
+            test.at(x, y) = 0.9f * reference.at(x, y) + 0.002f * static_cast<float>((x * 37 + y * 91) % 61);
+        }
+    }
+    const double expected = multi_scale_by_formula(test, reference, 1.0);
+    EXPECT_LT(expected, 0.99);  // the two differ
+    EXPECT_NEAR(multi_scale_ssim(test, reference, 1.0), expected, order_of_summation);
+    EXPECT_EQ(multi_scale_ssim(reference, reference, 1.0), 1.0);
+}
+
+TEST(MultiScaleSsim, ForgivesNoiseThatDistanceTakesAway) {
+    // Of one pixel's size: gone at coarser scales. A slope stays.
+    Image flat(200, 200, 1, 0.5f), noisy = flat, sloped = flat;
+    std::mt19937 random(1);
+    for (int y = 0; y < 200; ++y) {
+        for (int x = 0; x < 200; ++x) {
+            noisy.at(x, y) += random() % 2 == 0 ? 0.1f : -0.1f;
+            sloped.at(x, y) += 0.1f * std::sqrt(3.0f) * (2.0f * (static_cast<float>(x) + 0.5f) / 200.0f - 1.0f);
+        }
+    }
+    const double of_noise = multi_scale_ssim(noisy, flat, 1.0), of_slope = multi_scale_ssim(sloped, flat, 1.0);
+    EXPECT_GT(of_noise, ssim(noisy, flat, 1.0).mean);
+    EXPECT_LT(of_slope, 1.0);
+}
+
+TEST(MultiScaleSsim, ImagesTooSmallForItsScalesAreRefused) {
+    EXPECT_THROW(multi_scale_ssim(Image(200, 175, 1), Image(200, 175, 1), 1.0), ImageError);
+    EXPECT_EQ(multi_scale_ssim(Image(176, 176, 1), Image(176, 176, 1), 1.0), 1.0);
 }
 
 TEST(Ssim, ImagesSmallerThanTheWindowAreRefused) {
