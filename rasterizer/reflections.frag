@@ -33,13 +33,13 @@ struct Lobe {
     float cosine_o;
 };
 
-vec3 hit_radiance(RayHit hit, float alpha) {
+vec3 hit_radiance(RayHit hit, Lobe lobe) {
 #if ROUGHNESS == MIP
-    // Half of the microfacets have normals within atan(alpha) of the surface's.
-    float tangent = 2.0 * alpha / max(1.0 - alpha * alpha, 1e-3);
+    // Half of the microfacets have normals within atan(alpha) of the surface's; seen at an angle the lobe is narrower.
+    float tangent = 2.0 * lobe.alpha / max(1.0 - lobe.alpha * lobe.alpha, 1e-3) * sqrt(lobe.cosine_o);
     float surface = texelFetch(depth, ivec3(hit.pixel, hit.layer), 0).r;
-    float radius = tangent * hit.distance * pixels_per_metre / surface;
-    vec4 mean = chain_radiance(hit.position, hit.layer, log2(max(2.50662827 * radius, 1.0)));
+    float side = min(2.50662827 * tangent * hit.distance, 2.0 * hit.height) * pixels_per_metre / surface;
+    vec4 mean = chain_radiance(hit.position, hit.layer, log2(max(side, 1.0)));
     return mean.a > 0.0 ? mean.rgb / mean.a : surface_radiance(hit.pixel, hit.layer);
 #else
     return surface_radiance(hit.pixel, hit.layer);
@@ -58,7 +58,7 @@ vec3 arriving(ivec2 pixel, vec3 origin, vec3 camera_normal, vec3 direction, Lobe
 #else
         weight = 1.0;
 #endif
-        radiance = weight * hit_radiance(hit, lobe.alpha);
+        radiance = weight * hit_radiance(hit, lobe);
 #ifdef RADIUS
         radiance *= falloff(hit.distance * hit.distance / (RADIUS * RADIUS));
 #endif

@@ -18,9 +18,10 @@
 //     mirror   (f0 A + f90 B) L(reflect(o))               one ray for all of the lobe; exact for a mirror
 //     mip      the same, but L read from the MIP chain of what surfaces send out (radiance_mip_chain.h), where a texel
 //              is as wide as the lobe's footprint: half of the microfacets' normals lie within atan(alpha) of the
-//              surface's, half of the light thus comes from a disc of radius r = |XY| tan(2 atan alpha), which holds as
-//              much as half of a square of side sqrt(2 pi) r. Neither the lobe's stretch at grazing incidence nor what
-//              the footprint overlaps besides Y's surface is considered.
+//              surface's: half of the light comes from a patch of half widths |XY| tan(2 atan alpha) in the plane of
+//              incidence and o.n times as much across it. A disc of the same area has the radius r = |XY| tan(2 atan
+//              alpha) sqrt(o.n), and holds as much as half of a square of side sqrt(2 pi) r; no wider than reaches down to
+//              X's tangent plane, below which no ray goes. What else the footprint overlaps is not told apart.
 //     samples  mean of F G2 / G1 L(w_i), w_i reflected about visible normals (Heitz 2018), from the R2 sequence
 //     (Roberts
 //              2018) started at a hash of the pixel. Converges to the lobe's integral over what the layers hold. A

@@ -15,6 +15,7 @@ struct RayHit {
     vec2 position;   // where on the screen, pixels
     ivec2 pixel;
     float distance;  // metres
+    float height;    // metres above the tangent plane of where the ray starts
 };
 
 // Metres until the ray leaves the view's frustum or is long enough. `origin` lies inside.
@@ -88,7 +89,8 @@ bool refine(ScreenLine line, float before, float along, int layer, vec3 origin, 
     float surface = texelFetch(depth, ivec3(hit.pixel, layer), 0).r;
     vec3 offset = surface_point(hit.pixel, layer, surface) - origin;
     hit.distance = length(offset);
-    hit.found = !is_background(surface) && dot(offset, camera_normal) > BIAS;
+    hit.height = dot(offset, camera_normal);
+    hit.found = !is_background(surface) && hit.height > BIAS;
 #if TEST_HIT_NORMAL
     vec3 hit_normal = normal_of_texel(texelFetch(normal, ivec3(hit.pixel, layer), 0));
     hit.found = hit.found && dot(world_space_direction(direction), hit_normal) < 0.0;

@@ -124,7 +124,7 @@ private:
         int layer;
         Pixel pixel;
         glm::dvec2 position;
-        double distance;
+        double distance, height;
     };
 
     static std::uint32_t hash(std::uint32_t x) {
@@ -222,7 +222,7 @@ private:
                 const bool turned_is_open = settings.test_hit_normal && std::abs(turned) < 1e-5;
                 result.ambiguous |= above_is_open || turned_is_open;
                 if (above <= settings.bias || (settings.test_hit_normal && turned >= 0.0)) continue;
-                return Hit{layer, found, position(high), glm::length(offset)};
+                return Hit{layer, found, position(high), glm::length(offset), above};
             }
             before = along;
         }
@@ -232,6 +232,7 @@ private:
     glm::dvec3 arriving(Pixel pixel, const glm::dvec3& origin, const glm::dvec3& n, const glm::dvec3& w,
                         double roughness, double alpha, Reflected& result) const {
         const std::optional<Hit> hit = trace(pixel, origin, n, w, result);
+        const double cosine_o = std::max(0.0, glm::dot(n, -glm::normalize(origin)));
         ++result.rays;
         glm::dvec3 radiance(0.0);
         double weight = 0.0;
@@ -243,20 +244,20 @@ private:
             weight = request_.settings.border_fade > 0 ? std::clamp(to_border / request_.settings.border_fade, 0.0, 1.0)
                                                        : 1.0;
             radiance = weight * falloff_of_square(request_.falloff, std::pow(hit->distance / request_.radius, 2.0)) *
-                       radiance_of(*hit, alpha);
+                       radiance_of(*hit, alpha, cosine_o);
         }
         const bool samples = request_.settings.roughness == ReflectionRoughness::samples;
         const glm::dmat3 world_from_camera(layers_.view.camera().world_from_camera);
         return radiance + (1.0 - weight) * request_.fallback(world_from_camera * w, samples ? 0.0 : roughness);
     }
 
-    glm::dvec3 radiance_of(const Hit& hit, double alpha) const {
+    glm::dvec3 radiance_of(const Hit& hit, double alpha, double cosine_o) const {
         const glm::dvec3 at_hit = vector_at(layers_, layers_.radiance[hit.layer], hit.pixel);
         if (request_.settings.roughness != ReflectionRoughness::mip) return at_hit;
-        const double tangent = 2.0 * alpha / std::max(1.0 - alpha * alpha, 1e-3);
-        const double radius =
-            tangent * hit.distance * layers_.view.pixels_per_metre() / depth_at(layers_, hit.layer, hit.pixel);
-        const double side = std::max(std::sqrt(2.0 * std::numbers::pi) * radius, 1.0);
+        const double tangent = 2.0 * alpha / std::max(1.0 - alpha * alpha, 1e-3) * std::sqrt(cosine_o);
+        const double width = std::min(std::sqrt(2.0 * std::numbers::pi) * tangent * hit.distance, 2.0 * hit.height);
+        const double side =
+            std::max(width * layers_.view.pixels_per_metre() / depth_at(layers_, hit.layer, hit.pixel), 1.0);
         const double level = std::min(std::log2(side), static_cast<double>(chain_[hit.layer].size() - 1));
         const int finer = static_cast<int>(level);
         glm::dvec4 mean = bilinear(chain_[hit.layer][finer], hit.position / std::exp2(finer));
