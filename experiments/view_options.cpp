@@ -43,6 +43,19 @@ void ViewOptions::add_to(CLI::App& command, const std::vector<std::string>& defa
     command.add_option("-o,--output", output, "Folder for the files")->capture_default_str();
     command.add_flag("--deep", deep,
                      "Also write the layers as a deep OpenEXR file; wants the planes depth, layer2.depth...");
+    const std::string pictures = "Pictures (PNG only: never EXR files or measures)";
+    command.add_option("--tone-map", tone_map, "Curve of radiance: cut at white, Hable's filmic, or a fit to ACES")
+        ->check(CLI::IsMember({"linear", "filmic", "aces"}))
+        ->capture_default_str()
+        ->group(pictures);
+    command.add_option("--exposure", exposure, "Stops; by default each plane finds its own")
+        ->check(CLI::Range(-100.0, 100.0))
+        ->type_name("EV")
+        ->group(pictures);
+    command.add_option("--bloom", bloom, "Share of light that spreads around what is bright")
+        ->check(CLI::Range(0.0, 1.0))
+        ->capture_default_str()
+        ->group(pictures);
     const std::string group = "Quantities";
     command.add_option("--ao-radius", quantities.ao_radius, "Reach of ambient visibility, metres")
         ->check(CLI::PositiveNumber)
@@ -127,7 +140,11 @@ void write_frame_files(const Frame& frame, const ViewOptions& options, const std
     for (const std::string& plane : frame.plane_names()) {
         if (plane.starts_with("half_") || plane.starts_with("variance.")) continue;
         PictureSettings look;
-        look.exposure = static_cast<float>(std::log2(0.9 / default_data_range(plane, frame.plane(plane))));
+        look.tone_curve = tone_curve_from_string(options.tone_map);
+        look.bloom = options.bloom;
+        look.exposure = options.exposure
+                            ? *options.exposure
+                            : static_cast<float>(std::log2(0.9 / default_data_range(plane, frame.plane(plane))));
         const auto png = options.output / fmt::format("{}.{}.png", stem, plane);
         write_png(png, plane, frame.plane(plane), look);
         fmt::print("{}\n", png.string());

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,10 @@ struct ViewOptions {
     std::string indirect_falloff = "hard", reflection_falloff = "hard";
     std::filesystem::path output = "out";
     bool deep = false;  // write a deep OpenEXR file too
+    // Of the pictures alone.
+    std::string tone_map = "linear";
+    std::optional<float> exposure = {};  // stops; none: each plane's 99th percentile becomes nearly white
+    float bloom = 0.0f;
 
     void add_to(CLI::App& command, const std::vector<std::string>& default_planes);
     Quantities read_quantities() const;
@@ -39,7 +44,7 @@ struct ViewOptions {
 void require_writable_folder(const std::filesystem::path& folder);
 
 // Writes OUTPUT/SCENE.VIEW.NAME.exr, with --deep also .deep.exr, and one PNG per plane (no half-buffers or variances),
-// and prints their paths. Radiance is exposed so that its 99th percentile is nearly white.
+// and prints their paths. Radiance is exposed so that its 99th percentile is nearly white, unless an exposure is given.
 void write_frame_files(const Frame& frame, const ViewOptions& options, const std::string& view,
                        const std::string& name);
 

@@ -60,11 +60,12 @@ Image scaled(Image image, float factor) {
 
 }  // namespace
 
-Image picture_of_radiance(const Image& radiance, float exposure) {
+Image picture_of_radiance(const Image& radiance, float exposure, ToneCurve curve) {
     check_channels(radiance, "radiance", {1, 3});
     const float factor = std::exp2(exposure);
-    return picture(radiance, 0.0f, [factor](float value) {
-        return std::isinf(value) ? (value > 0.0f ? 1.0f : 0.0f) : linear_to_srgb(std::max(value, 0.0f) * factor);
+    return picture(radiance, 0.0f, [factor, curve](float value) {
+        if (std::isinf(value)) return value > 0.0f ? 1.0f : 0.0f;
+        return linear_to_srgb(apply_tone_curve(curve, std::max(value, 0.0f) * factor));
     });
 }
 
@@ -104,7 +105,7 @@ Image picture_of_plane(std::string_view plane, const Image& image, const Picture
         return picture_of_vectors(scaled(image, 1.0f / largest_magnitude(image)));
     if (name == "ao" || name == "alpha" || name == "seen_before")
         return picture_of_scalar(image, settings.low, settings.high);
-    return picture_of_radiance(image, settings.exposure);
+    return picture_of_radiance(with_bloom(image, settings.bloom), settings.exposure, settings.tone_curve);
 }
 
 std::string encode_png(const Image& displayed) {

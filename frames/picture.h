@@ -8,17 +8,21 @@
 
 #include "frames/colour_map.h"
 #include "frames/image.h"
+#include "frames/tone_map.h"
 
 namespace plumb {
 
 struct PictureSettings {
-    float exposure = 0.0f;  // stops: radiance is multiplied by 2^exposure before the sRGB curve
-    float low = 0.0f;       // the scalar shown black...
-    float high = 1.0f;      // ...and white; depth finds its own range
+    float exposure = 0.0f;                     // stops: radiance is multiplied by 2^exposure before the sRGB curve
+    float low = 0.0f;                          // the scalar shown black...
+    float high = 1.0f;                         // ...and white; depth finds its own range
+    ToneCurve tone_curve = ToneCurve::linear;  // of radiance
+    float bloom = 0.0f;                        // of radiance, 0 to 1
 };
 
 // Each returns sRGB-encoded values in 0..1 (Image of 3 channels); NaN is magenta, infinities are the nearest end.
-Image picture_of_radiance(const Image& radiance, float exposure = 0.0f);            // 3 channels, or 1 shown grey
+// Radiance: 3 channels, or 1 shown grey.
+Image picture_of_radiance(const Image& radiance, float exposure = 0.0f, ToneCurve curve = ToneCurve::linear);
 Image picture_of_scalar(const Image& scalar, float low = 0.0f, float high = 1.0f);  // 1 channel, grey, no curve
 Image picture_of_vectors(const Image& vectors);  // normals: 0.5 n + 0.5; 2 channels leave blue at 0.5
 Image picture_of_depth(const Image& depth);  // near is bright, its finite positive range normalised; nothing is black
