@@ -100,6 +100,23 @@ TEST_P(PipelineTest, FramesAllocateNothingAndRepeatBitForBit) {
     }
 }
 
+TEST_P(PipelineTest, TwoLayersAt720LinesStayBelow400MebibytesWithEveryStageOn) {
+    const Scene scene = make_builtin_scene("colonnade");
+    const std::size_t before = context().allocated_bytes();
+    const auto mebibytes = [&](const Method& method, std::vector<std::string> names) {
+        const Pipeline pipeline(context(), scene, method, planes(std::move(names)), 1280, 720);
+        return static_cast<double>(context().allocated_bytes() - before) / (1024.0 * 1024.0);
+    };
+    EXPECT_LT(mebibytes(Method(), {"total", "ao"}), 400.0);
+
+    Method everything;
+    everything.ao.temporal.alpha = everything.radiosity.temporal.alpha = 0.85f;
+    everything.radiosity.bounces = 2;
+    everything.reflections.enabled = true;
+    everything.antialias.temporal = true;
+    EXPECT_LT(mebibytes(everything, {"total", "ao", "motion"}), 400.0);
+}
+
 TEST_P(PipelineTest, PipelinesOfSeveralSizesLiveSideBySide) {
     const Scene scene = make_cornell();
     Pipeline small(context(), scene, small_method(), planes({"depth", "direct"}), 32, 24);
