@@ -6,6 +6,8 @@ namespace plumb {
 namespace {
 
 constexpr double negligible = 0.01;
+// Of what is carried on from bounce to bounce; more than most scenes reflect.
+constexpr double albedo = 0.8;
 
 // Until `share` to the power of the frames is negligible.
 int frames_of(double share) {
@@ -19,6 +21,8 @@ int frames_to_settle(const Method& method) {
     // Each waits for what it is fed with.
     if (method.ao.enabled) frames += frames_of(method.ao.temporal.alpha);
     if (method.radiosity.enabled) frames += frames_of(method.radiosity.temporal.alpha);
+    if (method.radiosity.enabled && method.radiosity.carry)
+        frames += frames_of(albedo * (1.0 - method.radiosity.damping));
     if (method.antialias.temporal) frames += frames_of(method.antialias.alpha);
     return frames;
 }

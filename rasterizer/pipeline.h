@@ -47,7 +47,8 @@ public:
     const std::vector<PassDecision>& decisions() const;
 
     // Renders one frame. Passes that keep something from frame to frame use it where the frame rendered before is the
-    // request's `previous`, and drop it else.
+    // request's `previous`, and drop it else. Where `total` is anti-aliased over frames, every other plane is that of
+    // the view with the frame's offset (temporal_antialias.h).
     RasterResult render(const FrameRequest& request);
     // Runs all passes, without reading anything back: for timing.
     std::vector<PassTiming> time_passes(const FrameRequest& request);

@@ -78,7 +78,7 @@ TemporalFilterPass::TemporalFilterPass(const PassResources& resources, const Tem
       depth_(resources.planes.get("depth")),
       normal_(resources.planes.get("normal")),
       previous_depth_(resources.planes.get(gbuffer_history)),
-      layer_(request.layer),
+      is_first_(!resources.planes.has(request.output)),
       reprojection_(resources, displacement_unit),
       area_(resources, {0, 0}, request.read_beyond),
       output_(create_output(resources, request)),
@@ -88,7 +88,7 @@ TemporalFilterPass::TemporalFilterPass(const PassResources& resources, const Tem
       target_(output_, &history_, [&] { return make_target(resources, request); }) {}
 
 void TemporalFilterPass::execute(const PassFrame& frame) {
-    if (layer_ == 0) history_.trade_places();
+    if (is_first_) history_.trade_places();
     noisy_.bind(0);
     depth_.bind(1);
     normal_.bind(2);

@@ -40,7 +40,7 @@ struct TemporalFilterRequest {
     std::string group;  // of its parameters, for errors: "ao.temporal"
     TemporalFilterSettings settings;
     std::string input, output;     // planes, without a layer's prefix
-    int layer = 0;                 // whose surfaces the planes belong to; that of the first layer comes first
+    int layer = 0;                 // whose surfaces the planes belong to
     std::string weight = {};       // plane of w, R32F, made where somebody reads it
     std::string read_beyond = {};  // see InnerArea
 };
@@ -56,7 +56,7 @@ private:
     const GlTexture& depth_;
     const GlTexture& normal_;
     const GlTexture& previous_depth_;
-    int layer_;
+    bool is_first_;  // of the passes that fill the layers of the output
     Reprojection reprojection_;
     InnerArea area_;
     const GlTexture& output_;

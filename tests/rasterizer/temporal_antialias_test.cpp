@@ -120,9 +120,9 @@ TEST_P(TemporalAntialiasTest, AStillViewConvergesToTheMeanOfItsMovedFrames) {
     // And that is what many frames with all kinds of offsets give: within what 16 points leave of 1 point's error, a
     // quarter for points chosen at random.
     Image truth(width, height, 3);
-    for (const glm::vec2& offset : jitter_offsets({.jitter_length = 100})) {
+    for (const glm::vec2& offset : jitter_offsets({.jitter_length = 64})) {
         const Image single = plain.render(view.with_offset(offset)).frame.plane("total");
-        for (std::size_t i = 0; i < truth.values().size(); ++i) truth.values()[i] += single.values()[i] / 100.0f;
+        for (std::size_t i = 0; i < truth.values().size(); ++i) truth.values()[i] += single.values()[i] / 64.0f;
     }
     const Image aliased = plain.render(view).frame.plane("total");
     const double of_one = root_mean_square(aliased, truth), of_many = root_mean_square(resolved, truth);
@@ -135,9 +135,9 @@ TEST_P(TemporalAntialiasTest, AStillViewIsSmootherThanOneFrameWithClampAndShortM
     const View view(scene.cameras[1], width, height);
     Pipeline plain(context(), scene, plain_method(), {.planes = {"total"}}, width, height);
     Image truth(width, height, 3);
-    for (const glm::vec2& offset : jitter_offsets({.jitter_length = 64})) {
+    for (const glm::vec2& offset : jitter_offsets({.jitter_length = 48})) {
         const Image single = plain.render(view.with_offset(offset)).frame.plane("total");
-        for (std::size_t i = 0; i < truth.values().size(); ++i) truth.values()[i] += single.values()[i] / 64.0f;
+        for (std::size_t i = 0; i < truth.values().size(); ++i) truth.values()[i] += single.values()[i] / 48.0f;
     }
     const double of_one = root_mean_square(plain.render(view).frame.plane("total"), truth);
     Pipeline antialiased(context(), scene, method_with({}), {.planes = {"total"}}, width, height);
@@ -153,7 +153,8 @@ TEST_P(TemporalAntialiasTest, AgreesWithItsCounterpartWhileCameraAndObjectsMove)
     const TemporalWalk walk(width, height);
     for (const AntialiasSettings& settings :
          {AntialiasSettings{.temporal = true}, AntialiasSettings{.temporal = true, .alpha = 0.7f, .clamp = false},
-          AntialiasSettings{.temporal = true, .jitter_length = 3, .dilate = false}}) {
+          AntialiasSettings{
+              .temporal = true, .jitter_length = 3, .dilate = false, .lookup = HistoryLookup::bilinear}}) {
         Pipeline pipeline(context(), walk.scene, method_with(settings),
                           {.planes = {"total", "total.aliased", "depth", "displacement"}}, width, height);
         std::optional<counterpart::RenderedFrame> before;

@@ -109,21 +109,31 @@ struct Resolved {
     Image colour, frames;
 };
 
-inline glm::dvec3 bilinear(const Image& image, const glm::dvec2& place) {
-    const double left = std::floor(place.x - 0.5), top = std::floor(place.y - 0.5);
-    glm::dvec3 sum(0.0);
-    for (const double column : {left, left + 1.0}) {
-        for (const double row : {top, top + 1.0}) {
-            const double share = (1.0 - std::abs(place.x - 0.5 - column)) * (1.0 - std::abs(place.y - 0.5 - row));
-            const int x = static_cast<int>(std::clamp(column, 0.0, image.width() - 1.0));
-            const int y = static_cast<int>(std::clamp(row, 0.0, image.height() - 1.0));
-            for (int c = 0; c < image.channels(); ++c) sum[c] += share * image.at(x, y, c);
-        }
-    }
-    return sum;
+// Weight of a pixel `distance` from where is looked: the triangle, or Keys' cubic of 1981 with a = -1/2, which is what
+// Catmull and Rom's spline amounts to.
+inline double lookup_weight(HistoryLookup lookup, double distance) {
+    const double d = std::abs(distance);
+    if (lookup == HistoryLookup::bilinear) return std::max(0.0, 1.0 - d);
+    if (d < 1.0) return 1.5 * d * d * d - 2.5 * d * d + 1.0;
+    return d < 2.0 ? -0.5 * d * d * d + 2.5 * d * d - 4.0 * d + 2.0 : 0.0;
 }
 
-// Resolves a frame; `before` and `history` are null on the first. Looks history up bilinearly.
+inline glm::dvec3 looked_up(HistoryLookup lookup, const Image& image, const glm::dvec2& place) {
+    const double left = std::floor(place.x - 0.5), top = std::floor(place.y - 0.5);
+    glm::dvec3 sum(0.0);
+    for (double column = left - 1.0; column <= left + 2.0; ++column) {
+        for (double row = top - 1.0; row <= top + 2.0; ++row) {
+            const double weight =
+                lookup_weight(lookup, place.x - 0.5 - column) * lookup_weight(lookup, place.y - 0.5 - row);
+            const int x = static_cast<int>(std::clamp(column, 0.0, image.width() - 1.0));
+            const int y = static_cast<int>(std::clamp(row, 0.0, image.height() - 1.0));
+            for (int c = 0; c < image.channels(); ++c) sum[c] += weight * image.at(x, y, c);
+        }
+    }
+    return glm::max(sum, glm::dvec3(0.0));
+}
+
+// Resolves a frame; `before` and `history` are null on the first.
 inline Resolved resolve(const RenderedFrame& now, const RenderedFrame* before, const Resolved* history,
                         const AntialiasSettings& settings) {
     const Image &aliased = now.planes.plane("total.aliased"), &depth = now.planes.plane("depth");
@@ -154,9 +164,9 @@ inline Resolved resolve(const RenderedFrame& now, const RenderedFrame* before, c
             const glm::dvec2 here = glm::dvec2(surface) + 0.5 + glm::dvec2(now.view.offset());
             const glm::dvec2 place = glm::dvec2(x, y) + 0.5 + then - here;
             if (place.x < 0.0 || place.y < 0.0 || place.x > width || place.y > height) continue;
-            glm::dvec3 kept = bilinear(history->colour, place);
+            glm::dvec3 kept = looked_up(settings.lookup, history->colour, place);
             if (settings.clamp) kept = glm::clamp(kept, least, greatest);
-            const double frames = bilinear(history->frames, place).x + 1.0;
+            const double frames = looked_up(settings.lookup, history->frames, place).x + 1.0;
             const double share = std::max(1.0 - static_cast<double>(settings.alpha), 1.0 / frames);
             for (int c = 0; c < 3; ++c)
                 result.colour.at(x, y, c) = static_cast<float>(kept[c] + share * (colour[c] - kept[c]));
