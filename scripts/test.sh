@@ -21,4 +21,4 @@ if [[ "${1:-}" == "--slow" ]]; then
     selection=()
     shift
 fi
-ctest --preset release "${selection[@]}" "$@"
+ctest --preset release -j "$(nproc)" "${selection[@]}" "$@"
