@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "rasterizer/gbuffer_planes.h"
 #include "rasterizer/gl_error.h"
 #include "rasterizer/temporal_antialias.h"
 
@@ -25,7 +26,13 @@ constexpr std::array<Term, 9> terms = {{{"direct", "DIRECT"},
                                         {"depth", "DEPTH"},
                                         {"normal", "NORMAL"},
                                         {"albedo", "ALBEDO"}}};
+constexpr std::size_t lights = 4;  // the first of them are radiance that is added
 constexpr GLuint ambient_unit = terms.size();
+
+// What ambient light is reflected by is what direct and indirect light are reflected by.
+std::string plane_of(const Term& term, const Scene& scene, const Method& method) {
+    return term.plane == std::string_view("albedo") ? diffuse_albedo_plane(scene, method) : term.plane;
+}
 
 bool is_demo(const Method& method) { return method.composite.kind == CompositeKind::demo; }
 
@@ -76,7 +83,7 @@ CompositePass::CompositePass(const PassResources& resources)
             defines(resources.scene, resources.method, ambient_)) {
     for (const Term& term : terms) {
         const bool read = is_read(term.plane, resources.scene, resources.method);
-        planes_.push_back(read ? &resources.planes.get(term.plane) : nullptr);
+        planes_.push_back(read ? &resources.planes.get(plane_of(term, resources.scene, resources.method)) : nullptr);
     }
     const GLenum format = resources.method.reflections.enabled ? GL_RGBA32F : GL_RGBA16F;
     const GlTexture& total = resources.planes.create(composited_plane(resources.method), format, 1);
@@ -95,12 +102,14 @@ PassDeclaration declare_composite(const Scene& scene, const Method& method) {
     require_sound(method);
     PassDeclaration pass;
     pass.name = "composite";
-    pass.remark = is_demo(method) ? "the demo's: " : "";
-    for (const Term& term : terms) {
+    for (std::size_t unit = 0; unit < terms.size(); ++unit) {
+        const Term& term = terms[unit];
         if (!is_read(term.plane, scene, method)) continue;
-        pass.remark += pass.inputs.empty() ? term.plane : fmt::format(" + {}", term.plane);
-        pass.inputs.emplace_back(term.plane);
+        if (unit < lights) pass.remark += pass.inputs.empty() ? term.plane : fmt::format(" + {}", term.plane);
+        pass.inputs.push_back(plane_of(term, scene, method));
     }
+    if (is_demo(method))
+        pass.remark += fmt::format(", as the demo weighs them, ambient light: {}", to_string(ambient_source(method)));
     for (std::string& plane : AmbientLight::inputs(ambient_source(method))) pass.inputs.push_back(std::move(plane));
     pass.outputs = {composited_plane(method)};
     pass.create = [](const PassResources& resources) { return std::make_unique<CompositePass>(resources); };

@@ -12,9 +12,9 @@
 // In n still frames E so becomes the sum of the first n bounces within a frame (radiosity.bounces), each times
 // (1 - damping)^(k - 1), as long as what taps send adds up: with one layer, or with the estimator nielsen2015. With two
 // layers mara2016 takes the layer that sends more in all, not in each bounce. `irradiance` and `indirect` then hold all
-// bounces, and no indirect.k can be told apart. Good for: the cost of one bounce, in still views. Bad for: moving lights
-// and objects, behind which each bounce lags by a frame; far and slanted surfaces under a moving camera, on which half a
-// pixel is farther than carry_to.
+// bounces, and no indirect.k can be told apart. Good for: the cost of one bounce, in still views. Bad for: moving
+// lights and objects, behind which each bounce lags by a frame; far and slanted surfaces under a moving camera, on
+// which half a pixel is farther than carry_to.
 //
 // `damping` is that of the demo of Mara et al.: the fraction taken away (0.1 in its presets; 1: no second bounce at
 // all). The paper's factor of the same purpose is what is left of the light, 1 - damping.
