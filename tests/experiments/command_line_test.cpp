@@ -74,6 +74,21 @@ TEST(CommandLine, AMethodPrintsAllItsParameters) {
                  HasSubstr("radiosity.blur.monotonic = true\n")));
 }
 
+TEST(CommandLine, AFrameOnAPathIsRenderedAfterThoseBeforeIt) {
+    const TemporaryFolder folder;
+    const std::vector<std::string> walk = {"render", "clutter-moving", "--path", "strafe",   "--time",
+                                           "1",      "--size",         "32",     "24",       "--repetitions",
+                                           "0",      "--planes",       "ao",     "--output", folder.path.string()};
+    const auto with = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), walk.begin(), walk.end());
+        return more;
+    };
+    expect(with({"--frames", "3"}), 0, HasSubstr("frame 3 of 3, at 1.000 s"));
+    // As many as the history needs: 0.5^7 is less than a hundredth.
+    expect(with({"--set", "ao.temporal.alpha=0.5"}), 0, HasSubstr("frame 8 of 8, at 1.000 s"));
+    expect(with({"--frames", "0"}), 2, HasSubstr("--frames"));
+}
+
 TEST(CommandLine, DoctorTellsWhatThereIs) {
     const ProgramRun run = run_plumbline({"doctor"});
     EXPECT_TRUE(run.exit_code == 0 || run.exit_code == 3) << run.output;
