@@ -20,9 +20,12 @@ int frames_to_settle(const Method& method) {
     int frames = 1;
     // Each waits for what it is fed with.
     if (method.ao.enabled) frames += frames_of(method.ao.temporal.alpha);
-    if (method.radiosity.enabled) frames += frames_of(method.radiosity.temporal.alpha);
-    if (method.radiosity.enabled && method.radiosity.carry)
-        frames += frames_of(albedo * (1.0 - method.radiosity.damping));
+    if (method.radiosity.enabled) {
+        // What is carried on is what the filter gave: a frame's share goes through both in each frame.
+        const double alpha = method.radiosity.temporal.alpha;
+        const double carried = method.radiosity.carry ? albedo * (1.0 - method.radiosity.damping) : 0.0;
+        frames += frames_of(alpha + (1.0 - alpha) * carried);
+    }
     if (method.antialias.temporal) frames += frames_of(method.antialias.alpha);
     return frames;
 }
