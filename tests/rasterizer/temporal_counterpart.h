@@ -92,8 +92,8 @@ inline Accumulated accumulate(const RenderedFrame& now, const RenderedFrame& bef
                                          .at(static_cast<int>(column), static_cast<int>(row));
                 distance = std::min(distance, std::abs(depth - expected) * glm::length(ray));
             }
-            const double t =
-                std::clamp((distance - settings.reject_from) / (settings.reject_to - settings.reject_from), 0.0, 1.0);
+            const double range = settings.reject_to - settings.reject_from, beyond = distance - settings.reject_from;
+            const double t = range > 0.0 ? std::clamp(beyond / range, 0.0, 1.0) : beyond > 0.0 ? 1.0 : 0.0;
             const double weight = settings.alpha * share * (1.0 - t * t * (3.0 - 2.0 * t));
             if (weight == 0.0) continue;
             result.value +=

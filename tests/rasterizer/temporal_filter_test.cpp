@@ -122,7 +122,8 @@ TEST_P(TemporalFilterTest, VarianceOfIndependentNoiseFallsToTheGeometricSumOfSqu
 TEST_P(TemporalFilterTest, AgreesWithItsCounterpartWhileCameraAndObjectsMove) {
     for (const TemporalFilterSettings& settings :
          {TemporalFilterSettings{.alpha = 0.85f}, TemporalFilterSettings{.alpha = 0.95f, .layers = 2},
-          TemporalFilterSettings{.alpha = 0.5f, .reject_from = 0.0f, .reject_to = 0.5f}}) {
+          TemporalFilterSettings{.alpha = 0.5f, .reject_from = 0.0f, .reject_to = 0.5f},
+          TemporalFilterSettings{.alpha = 0.85f, .reject_from = 0.01f, .reject_to = 0.01f, .layers = 2}}) {
         const TemporalWalk walk(width, height);
         Pipeline pipeline(context(), walk.scene, method_with(settings), {.planes = planes_of_filter}, width, height);
         std::optional<counterpart::RenderedFrame> before;
@@ -367,6 +368,28 @@ TEST_P(TemporalFilterTest, AGuardBandChangesNothingInAStillView) {
                     ASSERT_NEAR(weight, 0.85f, 1e-3f) << x << ", " << y;
                 }
             }
+        }
+    }
+}
+
+// Layers that are handed in keep what they held, too.
+TEST_P(TemporalFilterTest, LayersFromTheTruthHaveAHistory) {
+    const Scene scene = make_cornell();
+    const View view(scene.cameras[0], 64, 48);
+    const Quantities planes_of_truth{.planes = {"depth", "normal", "layer2.depth", "layer2.normal"}};
+    Pipeline rendering(context(), scene, method_with({}), planes_of_truth, 64, 48);
+    const Frame truth = rendering.render(view).frame;
+    for (const int layers : {1, 2}) {
+        Method method = method_with({.alpha = 0.85f, .layers = layers});
+        method.gbuffer.source = SourceOfStage::truth;
+        Pipeline pipeline(context(), scene, method, {.planes = {"ao", "ao.history_weight"}}, 64, 48);
+        const Frame first = pipeline.render(view, nullptr, &truth).frame;
+        const Frame second = pipeline.render(view, nullptr, &truth).frame;
+        for (std::size_t i = 0; i < 64 * 48; ++i) {
+            ASSERT_EQ(first.plane("ao.history_weight").values()[i], 0.0f);
+            const bool background = std::isinf(truth.plane("depth").values()[i]);
+            // 1e-3: rounding of the place between pixels.
+            ASSERT_NEAR(second.plane("ao.history_weight").values()[i], background ? 0.0f : 0.85f, 1e-3f) << i;
         }
     }
 }
