@@ -160,7 +160,7 @@ private:
         double low = 0.0, high = std::min({static_cast<double>(request_.settings.max_distance), request_.radius,
                                            4.0 * camera.far_plane * (1.0 + glm::length(tan_half))});
         if (inside(high)) return high;
-        for (int i = 0; i < 100; ++i) {
+        for (int i = 0; i < 60; ++i) {
             const double middle = 0.5 * (low + high);
             (inside(middle) ? low : high) = middle;
         }
