@@ -2,9 +2,9 @@
 //
 // Defines: COMPARISON_LAYER (of the depth behind which fragments are kept), LAYERS_AT_ONCE (then only those of layer 1
 // are compared, and layer 2 is the depth of the frame to come), REPROJECT (compares in the previous frame), WRITE_NORMAL,
-// WRITE_ALBEDO, WRITE_DIFFUSE_ALBEDO, WRITE_SPECULAR, WRITE_ROUGHNESS, WRITE_EMISSION, WRITE_DISPLACEMENT, WRITE_POSITION
-// with the location of each output, those of material.glsl, of gbuffer_vertex.glsl and, with WRITE_DIFFUSE_ALBEDO, of
-// specular_albedo.glsl.
+// WRITE_ALBEDO, WRITE_DIFFUSE_ALBEDO, WRITE_SPECULAR, WRITE_ROUGHNESS, WRITE_EMISSION, WRITE_DISPLACEMENT and
+// WRITE_POSITION with the location of each output, those of material.glsl, of gbuffer_vertex.glsl and, with
+// WRITE_DIFFUSE_ALBEDO, of specular_albedo.glsl.
 #include "gbuffer_vertex.glsl"
 #include "material.glsl"
 #include "normal_encoding.glsl"

@@ -5,9 +5,8 @@
 //   depth            R32F       metres along -Z, +infinity where nothing is
 //   normal           normal_encoding.h has the formats; turned to the viewer
 //   albedo           RGBA16F
-//   diffuse_albedo   RGBA16F    albedo times what the specular lobe leaves of light, 1 - E(o)
-//   (scenes/specular_albedo.h): what
-//                               the diffuse lobe reflects, seen from the camera
+//   diffuse_albedo   RGBA16F    what the diffuse lobe reflects, seen from the camera: albedo (1 - E(o)), E the specular
+//                               albedo (scenes/specular_albedo.h)
 //   specular         RGBA16F    f0 in rgb, f90 in a (scenes/material.h); 0: there is no specular lobe
 //   roughness        R16F       perceptual
 //   emission         RGBA16F    in the first layer also the environment's radiance where nothing is in front of it

@@ -1,6 +1,7 @@
 // What the specular lobe reflects of lamps and suns; lamp_highlights_pass.h has the formula.
 //
-// Defines: POINT_LIGHTS, SPOT_LIGHTS, DIRECTIONAL_LIGHTS (their numbers, where not zero), and those of shadow_lookup.glsl.
+// Defines: POINT_LIGHTS, SPOT_LIGHTS, DIRECTIONAL_LIGHTS (their numbers, where not zero), and those of
+// shadow_lookup.glsl.
 #include "ggx.glsl"
 #include "lit_surface.glsl"
 #include "local_light.glsl"
@@ -29,7 +30,8 @@ vec3 reflected(Lobe lobe, vec3 to_light, vec3 irradiance, vec3 shading_normal) {
     vec3 h = sum * inversesqrt(square);
     vec3 across = cross(lobe.normal, h);
     float cosine_o = max(dot(lobe.normal, lobe.to_viewer), 0.0);
-    float visibility = 0.5 / (cosine_o * smith_root(cosine_i, lobe.alpha) + cosine_i * smith_root(cosine_o, lobe.alpha));
+    float masking = cosine_o * smith_root(cosine_i, lobe.alpha) + cosine_i * smith_root(cosine_o, lobe.alpha);
+    float visibility = 0.5 / masking;
     float distribution = ggx_distribution(dot(lobe.normal, h), dot(across, across), lobe.alpha);
     return schlick_fresnel(lobe.f0, lobe.f90, dot(lobe.to_viewer, h)) * (distribution * visibility) *
            (irradiance * (cosine_i / cosine_shading));

@@ -1,8 +1,8 @@
 // The plane `reflection`; reflections.h has the formulas.
 //
 // Defines: ROUGHNESS with the names of its values, SAMPLES, BORDER_FADE (pixels), FALLBACK (0, 1: there is a cube),
-// LAMPS (0, 1: there is a plane of highlights), RAYS_PER_DRAW, RADIUS (metres; none: unlimited), COARSEST_RADIANCE_LEVEL, and those of
-// screen_space_ray.glsl, surface_radiance.glsl, falloff.glsl, specular_albedo.glsl.
+// LAMPS (0, 1: there is a plane of highlights), RAYS_PER_DRAW, RADIUS (metres; none: unlimited),
+// COARSEST_RADIANCE_LEVEL, and those of screen_space_ray.glsl, surface_radiance.glsl, falloff.glsl, specular_albedo.glsl.
 #include "screen_space_ray.glsl"
 #include "surface_radiance.glsl"
 #include "ggx.glsl"

@@ -20,12 +20,11 @@
 //              is as wide as the lobe's footprint: half of the microfacets' normals lie within atan(alpha) of the
 //              surface's: half of the light comes from a patch of half widths |XY| tan(2 atan alpha) in the plane of
 //              incidence and o.n times as much across it. A disc of the same area has the radius r = |XY| tan(2 atan
-//              alpha) sqrt(o.n), and holds as much as half of a square of side sqrt(2 pi) r; no wider than reaches down to
-//              X's tangent plane, below which no ray goes. What else the footprint overlaps is not told apart.
-//     samples  mean of F G2 / G1 L(w_i), w_i reflected about visible normals (Heitz 2018), from the R2 sequence
-//     (Roberts
-//              2018) started at a hash of the pixel. Converges to the lobe's integral over what the layers hold. A
-//              mirror takes one ray.
+//              alpha) sqrt(o.n), and holds as much as half of a square of side sqrt(2 pi) r; no wider than reaches down
+//              to X's tangent plane, below which no ray goes. What else the footprint overlaps is not told apart.
+//     samples  mean of F G2 / G1 L(w_i), w_i reflected about visible normals (Heitz 2018), drawn by the R2 sequence
+//              (Roberts 2018) from a hash of the pixel on. Converges to the lobe's integral over what the layers hold.
+//              A mirror takes one ray.
 // L(w) of a hit is what the method knows of Y, as the path tracer counts bounces: emission; with Quantities::bounces of
 // 1 or more `direct`; of 2 or more, and with radiosity, also `indirect` (of the first layer, without the guard band).
 // Y's own specular lobe is missing: mirrors show mirrors black, but for what is diffuse in them. Within border_fade
