@@ -10,7 +10,8 @@ endif()
 find_program(CCACHE ccache)
 if(CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
     set(CMAKE_C_COMPILER_LAUNCHER ${CCACHE})
-    set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE})
+    # Without this it leaves alone what is compiled with precompiled headers.
+    set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros ${CCACHE})
 endif()
 
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
@@ -23,6 +24,9 @@ set(PLUMBLINE_SANITIZE "" CACHE STRING "Value of -fsanitize; empty for none")
 add_library(plumbline_compiler INTERFACE)
 target_compile_options(plumbline_compiler INTERFACE
     -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wcast-align -Woverloaded-virtual -Werror)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    target_compile_options(plumbline_compiler INTERFACE -fpch-preprocess)  # for ccache
+endif()
 if(PLUMBLINE_ARCH)
     target_compile_options(plumbline_compiler INTERFACE -march=${PLUMBLINE_ARCH})
 endif()

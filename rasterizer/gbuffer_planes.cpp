@@ -4,7 +4,9 @@
 #include <array>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include "rasterizer/gl_error.h"
 #include "rasterizer/normal_encoding.h"
 
 namespace plumb {
@@ -72,6 +74,18 @@ GBufferTargets gbuffer_targets(const PassResources& resources, const GlTexture& 
         if (layer < 0 ? !any_layer_is_read(resources, name) : !resources.is_read(layer_prefix(layer) + name)) continue;
         targets.defines.emplace_back(plane.location, fmt::format("{}", targets.colours.size()));
         targets.colours.push_back({&resources.planes.get(name), layer});
+    }
+    GLint most = 0;
+    resources.context.gl.GetIntegerv(GL_MAX_DRAW_BUFFERS, &most);
+    if (targets.colours.size() > static_cast<std::size_t>(most)) {
+        std::vector<std::string> names;
+        for (const GBufferPlane& plane : gbuffer_planes) {
+            if (any_layer_is_read(resources, plane.name)) names.emplace_back(plane.name);
+        }
+        throw MethodError(
+            fmt::format("the G-buffer is asked for {} planes at once ({}), and this OpenGL writes {} in a "
+                        "pass; ask for fewer, or set gbuffer.position to \"from_depth\"",
+                        targets.colours.size(), fmt::join(names, ", "), most));
     }
     return targets;
 }

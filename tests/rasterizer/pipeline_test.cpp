@@ -233,6 +233,16 @@ TEST_P(PipelineTest, ImpossibleMethodsSayWhatToChange) {
     method.direct.shadow.emitter_samples = 64;
     method.direct.shadow.emitter_size = 4096;
     EXPECT_THAT(make(method, {"direct"}), HasSubstr("GiB"));
+
+    GLint most = 0;  // OpenGL guarantees 8
+    context().make_current();
+    context().gl.GetIntegerv(GL_MAX_DRAW_BUFFERS, &most);
+    if (most > 8) return;
+    method = small_method();
+    method.gbuffer.position = PositionSource::stored;
+    EXPECT_THAT(make(method, {"depth", "normal", "albedo", "diffuse_albedo", "specular", "roughness", "emission",
+                              "displacement", "camera_position"}),
+                HasSubstr("9 planes at once"));
 }
 
 TEST(PassPlan, FollowsReadersBackwards) {
