@@ -71,7 +71,8 @@ TEST(Generation, PeelAndDelayAreExactAndTheOthersAreWhereNothingMoves) {
 }
 
 TEST(Generation, MethodsThatHaveNoSecondLayerAreRefused) {
-    const std::string text = std::string(walks) + "[[methods]]\nname = \"one\"\nbase = \"one_layer\"\n";
+    std::string text(walks);
+    text += "[[methods]]\nname = \"one\"\nbase = \"one_layer\"\n";
     try {
         parse_generation(parse_config(text, "walks.toml"), "walks.toml");
         FAIL() << "took a method with one layer";
