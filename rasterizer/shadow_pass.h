@@ -12,8 +12,8 @@
 //       edges are seen from the light, become arcs of circles, but are drawn straight. An edge that covers the angle
 //       phi is displaced by up to phi^2 / 8 radians (the arc's sagitta, largest along the horizon of a half; zero
 //       through its middle). Edges are therefore cut until that is a texel, phi = 4 / sqrt(size), but into
-//       paraboloid_tessellation segments at most: 1 is the method as published, good for fine meshes only; 8 still shade
-//       whole patches of a ceiling of few triangles with a lamp under it (Conference) wrongly.
+//       paraboloid_tessellation segments at most: 1 is the method as published, good for fine meshes only; 8 still
+//       shade whole patches of a ceiling of few triangles with a lamp under it (Conference) wrongly.
 // Spot lights have one view of their cone, directional lights an orthographic view fitted to the scene's bounds; both
 // are filtered over pcf_radius texels. Emissive surfaces have a cube around each of their sample points.
 //   Good for: any number of lights within memory. Bad for: lamps inside narrow shades (what is closer than a centimetre
