@@ -82,7 +82,7 @@ float apply_tone_curve(ToneCurve curve, float exposed) {
             return std::min(hable(2.0f * x) / white, 1.0f);
         }
         case ToneCurve::aces:
-            return std::min(x * (2.51f * x + 0.03f) / (x * (2.43f * x + 0.59f) + 0.14f), 1.0f);
+            return std::min(x * (AcesFit::a * x + AcesFit::b) / (x * (AcesFit::c * x + AcesFit::d) + AcesFit::e), 1.0f);
     }
     return exposed;
 }

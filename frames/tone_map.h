@@ -26,6 +26,11 @@ enum class ToneCurve { linear, filmic, aces };
 std::string_view to_string(ToneCurve curve);
 ToneCurve tone_curve_from_string(std::string_view name);  // throws ImageError that lists the names
 
+// The coefficients of aces: x (a x + b) / (x (c x + d) + e).
+struct AcesFit {
+    static constexpr float a = 2.51f, b = 0.03f, c = 2.43f, d = 0.59f, e = 0.14f;
+};
+
 // Of exposed radiance, 0 or more; 0 to 1 (linear: also more), still to be encoded as sRGB.
 float apply_tone_curve(ToneCurve curve, float exposed);
 

@@ -14,18 +14,18 @@
 
 #include "frames/image_error.h"
 #include "frames/parallel.h"
+#include "frames/tone_map.h"
 #include "metrics/flip_colour.h"
 #include "metrics/shape.h"
 
 namespace plumb {
 namespace {
 
-constexpr double feature_width = 0.082;                     // w, degrees
-constexpr double feature_exponent = 0.5;                    // q_f
-constexpr int rows_at_once = 64;                            // of a block that one thread filters
-constexpr double nearly_white = 0.85;                       // tone-mapped
-constexpr std::array aces = {0.6 * 0.6 * 2.51, 0.6 * 0.03,  // (x (a x + b)) / (x (c x + d) + e), exposed by 0.6
-                             0.6 * 0.6 * 2.43, 0.6 * 0.59, 0.14};
+constexpr double feature_width = 0.082;   // w, degrees
+constexpr double feature_exponent = 0.5;  // q_f
+constexpr int rows_at_once = 64;          // of a block that one thread filters
+constexpr double nearly_white = 0.85;     // tone-mapped
+constexpr double aces_exposure = 0.6;     // of the source, before its tone mapper
 
 // Weights for offsets -radius..radius.
 struct Kernel {
@@ -272,17 +272,14 @@ void require_comparable(const Image& test, const Image& reference, double pixels
 }
 
 float tone_mapped(float x) {
-    const auto a = static_cast<float>(aces[0]), b = static_cast<float>(aces[1]), c = static_cast<float>(aces[2]),
-               d = static_cast<float>(aces[3]), e = static_cast<float>(aces[4]);
-    x = std::max(x, 0.0f);
-    return x * (a * x + b) / (x * (c * x + d) + e);
+    return apply_tone_curve(ToneCurve::aces, static_cast<float>(aces_exposure) * std::max(x, 0.0f));
 }
 
 // The exposed value that the tone mapper makes nearly white.
 double value_of_nearly_white() {
-    const double a = aces[0] - nearly_white * aces[2], b = aces[1] - nearly_white * aces[3],
-                 c = -nearly_white * aces[4];
-    return (-b + std::sqrt(b * b - 4.0 * a * c)) / (2.0 * a);
+    const double a = AcesFit::a - nearly_white * AcesFit::c, b = AcesFit::b - nearly_white * AcesFit::d,
+                 c = -nearly_white * AcesFit::e;
+    return (-b + std::sqrt(b * b - 4.0 * a * c)) / (2.0 * a) / aces_exposure;
 }
 
 }  // namespace
