@@ -5,22 +5,16 @@
 // Times are the pipeline's own, of frames that have a history.
 #include <cmath>
 #include <map>
-#include <memory>
 #include <string>
 
 #include <benchmark/benchmark.h>
 
-#include "rasterizer/gl_context.h"
+#include "rasterizer/benchmark_context.h"
 #include "rasterizer/pipeline.h"
 #include "rasterizer/plane_textures.h"
 
 namespace plumb {
 namespace {
-
-GlContext& context() {
-    static const std::unique_ptr<GlContext> instance = GlContext::create(GlBackend::automatic, false);
-    return *instance;
-}
 
 // Four sheets of 2 * side^2 triangles each.
 const Scene& sheets(int side) {
@@ -86,7 +80,7 @@ void measure(benchmark::State& state, const GBufferCase& asked) {
     }
     const int width = 640, height = 360;
     try {
-        Pipeline pipeline(context(), scene, method, quantities, width, height);
+        Pipeline pipeline(benchmark_context(), scene, method, quantities, width, height);
         const View view(Camera::look_at("front", {0, 0, 0}, {0, 0, -1}, 0.9f), width, height);
         for (int i = 0; i < 2; ++i) pipeline.time_passes(view);  // shaders are compiled, history is there
         for ([[maybe_unused]] auto _ : state) {
@@ -101,7 +95,7 @@ void measure(benchmark::State& state, const GBufferCase& asked) {
     }
     state.counters["triangles"] = static_cast<double>(scene.triangle_count());
     state.counters["pixels"] = static_cast<double>(width) * height;
-    state.SetLabel(context().info().renderer);
+    state.SetLabel(benchmark_context().info().renderer);
 }
 
 }  // namespace

@@ -2,22 +2,16 @@
 // pipeline measures them, on the Cornell box. `taps` are those of all pixels, layers and bounces; `ns_per_tap` is read
 // over them.
 #include <algorithm>
-#include <memory>
 #include <string>
 
 #include <benchmark/benchmark.h>
 
-#include "rasterizer/gl_context.h"
+#include "rasterizer/benchmark_context.h"
 #include "rasterizer/pipeline.h"
 #include "scenes/builtin.h"
 
 namespace plumb {
 namespace {
-
-GlContext& context() {
-    static const std::unique_ptr<GlContext> instance = GlContext::create(GlBackend::automatic, false);
-    return *instance;
-}
 
 const Scene& scene() {
     static const Scene instance = make_cornell();
@@ -30,7 +24,7 @@ bool belongs_to_radiosity(const std::string& pass) {
 
 void measure(benchmark::State& state, const Method& method, int height) {
     const View view(scene().camera("front"), height * 16 / 9, height);
-    Pipeline pipeline(context(), scene(), method, {.planes = {"indirect"}}, view.width(), view.height());
+    Pipeline pipeline(benchmark_context(), scene(), method, {.planes = {"indirect"}}, view.width(), view.height());
     pipeline.time_passes(view);  // the driver compiles shaders at their first use
     double seconds = 0.0;
     for ([[maybe_unused]] auto _ : state) {
@@ -51,8 +45,8 @@ void measure(benchmark::State& state, const Method& method, int height) {
     state.counters["pixels"] = pixels;
     state.counters["taps"] = taps;
     state.counters["ns_per_tap"] = 1e9 * seconds / (static_cast<double>(state.iterations()) * taps);
-    state.counters["GL_MiB"] = static_cast<double>(context().allocated_bytes()) / (1024.0 * 1024.0);
-    state.SetLabel(context().info().renderer);
+    state.counters["GL_MiB"] = static_cast<double>(benchmark_context().allocated_bytes()) / (1024.0 * 1024.0);
+    state.SetLabel(benchmark_context().info().renderer);
 }
 
 Method method_of(benchmark::State& state) {

@@ -1,22 +1,16 @@
 // What blurs, temporal filters and temporal anti-aliasing cost at three sizes. The time is that of the pass alone, as
 // the pipeline measures it, in a still view whose history is full; counted are pixels, and texels of the filtered plane
 // that are read.
-#include <memory>
 #include <string>
 
 #include <benchmark/benchmark.h>
 
-#include "rasterizer/gl_context.h"
+#include "rasterizer/benchmark_context.h"
 #include "rasterizer/pipeline.h"
 #include "scenes/builtin.h"
 
 namespace plumb {
 namespace {
-
-GlContext& context() {
-    static const std::unique_ptr<GlContext> instance = GlContext::create(GlBackend::automatic, false);
-    return *instance;
-}
 
 const Scene& scene() {
     static const Scene instance = make_cornell();
@@ -28,7 +22,7 @@ void measure(benchmark::State& state, const Method& method, const std::string& p
              double taps_per_pixel) {
     const int height = static_cast<int>(state.range(0)), width = height * 16 / 9;
     const View view(scene().camera("front"), width, height);
-    Pipeline pipeline(context(), scene(), method, {.planes = {plane}}, width, height);
+    Pipeline pipeline(benchmark_context(), scene(), method, {.planes = {plane}}, width, height);
     // The driver compiles shaders at their first use, and the second frame is the first with a history.
     for (int i = 0; i < 2; ++i) pipeline.time_passes(view);
     double seconds = 0.0;
@@ -43,7 +37,7 @@ void measure(benchmark::State& state, const Method& method, const std::string& p
     state.counters["pixels"] = pixels;
     state.counters["taps"] = pixels * taps_per_pixel;
     state.counters["ns_per_tap"] = 1e9 * seconds / (static_cast<double>(state.iterations()) * pixels * taps_per_pixel);
-    state.SetLabel(context().info().renderer);
+    state.SetLabel(benchmark_context().info().renderer);
 }
 
 // The second argument: the kind.

@@ -1,22 +1,16 @@
 // What reflections cost over steps, layers and roughness, at three sizes: all of their passes together, as the pipeline
 // measures them, on the Cornell box with every surface made glossy. `steps` is the most that all rays of all pixels may
 // take; rays that end before are the reason why `ns_per_step` falls with max_steps.
-#include <memory>
 #include <string>
 
 #include <benchmark/benchmark.h>
 
-#include "rasterizer/gl_context.h"
+#include "rasterizer/benchmark_context.h"
 #include "rasterizer/pipeline.h"
 #include "scenes/builtin.h"
 
 namespace plumb {
 namespace {
-
-GlContext& context() {
-    static const std::unique_ptr<GlContext> instance = GlContext::create(GlBackend::automatic, false);
-    return *instance;
-}
 
 const Scene& scene() {
     static const Scene instance = [] {
@@ -39,7 +33,7 @@ void reflections(benchmark::State& state) {
     settings.roughness = static_cast<ReflectionRoughness>(state.range(3));
     settings.samples = static_cast<int>(state.range(4));
     const View view(scene().camera("front"), height * 16 / 9, height);
-    Pipeline pipeline(context(), scene(), method, {.planes = {"reflection"}}, view.width(), view.height());
+    Pipeline pipeline(benchmark_context(), scene(), method, {.planes = {"reflection"}}, view.width(), view.height());
     pipeline.time_passes(view);  // the driver compiles shaders at their first use
     double seconds = 0.0;
     for ([[maybe_unused]] auto _ : state) {
@@ -58,7 +52,7 @@ void reflections(benchmark::State& state) {
     state.counters["pixels"] = pixels;
     state.counters["steps"] = steps;
     state.counters["ns_per_step"] = 1e9 * seconds / (static_cast<double>(state.iterations()) * steps);
-    state.SetLabel(context().info().renderer);
+    state.SetLabel(benchmark_context().info().renderer);
 }
 
 void over_steps_layers_and_roughness(benchmark::internal::Benchmark* cases) {

@@ -1,21 +1,15 @@
 // What the screen-space passes cost on a view of 1280x720: over taps, radius, layers, with and without the MIP chain.
 // The time is that of the pass alone, as the pipeline measures it.
-#include <memory>
 #include <string>
 
 #include <benchmark/benchmark.h>
 
-#include "rasterizer/gl_context.h"
+#include "rasterizer/benchmark_context.h"
 #include "rasterizer/pipeline.h"
 #include "scenes/builtin.h"
 
 namespace plumb {
 namespace {
-
-GlContext& context() {
-    static const std::unique_ptr<GlContext> instance = GlContext::create(GlBackend::automatic, false);
-    return *instance;
-}
 
 const Scene& scene() {
     static const Scene instance = make_cornell();
@@ -24,14 +18,14 @@ const Scene& scene() {
 
 void measure(benchmark::State& state, const Method& method, const Quantities& quantities, const std::string& pass) {
     const View view(scene().camera("front"), 1280, 720);
-    Pipeline pipeline(context(), scene(), method, quantities, view.width(), view.height());
+    Pipeline pipeline(benchmark_context(), scene(), method, quantities, view.width(), view.height());
     pipeline.time_passes(view);  // the driver compiles shaders at their first use
     for ([[maybe_unused]] auto _ : state) {
         for (const PassTiming& timing : pipeline.time_passes(view)) {
             if (timing.pass == pass) state.SetIterationTime(timing.milliseconds / 1000.0);
         }
     }
-    state.SetLabel(context().info().renderer);
+    state.SetLabel(benchmark_context().info().renderer);
 }
 
 // Arguments: taps, radius in centimetres, layers, MIP chain.

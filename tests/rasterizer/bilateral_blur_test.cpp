@@ -1,4 +1,3 @@
-#include "rasterizer/bilateral_blur.h"
 
 #include <numeric>
 
@@ -6,41 +5,15 @@
 #include <gtest/gtest.h>
 
 #include "bilateral_blur_counterpart.h"
+#include "blur_run.h"
 #include "gl_test.h"
 #include "rasterizer/gl_error.h"
-#include "screen_space_run.h"
 
 namespace plumb {
 namespace {
 
 using BilateralBlurTest = GlTest;
 PLUMBLINE_BOTH_BACKENDS(BilateralBlurTest);
-
-constexpr float radius = 1.0f;  // metres, of the blurred quantity
-
-// Blurs an image that the test makes up.
-Image blur(GlContext& context, const counterpart::Layers& layers, const BilateralBlurSettings& settings,
-           const Image& image, int guard_band = 0) {
-    Method method;
-    method.gbuffer.guard_band = guard_band;
-    const PassDeclaration blur = declare_bilateral_blur(
-        {.name = "blur", .settings = settings, .quantity_radius = radius, .input = "noisy", .output = "smooth"});
-    const PassDeclaration given = {
-        "given noise", {}, {"noisy"}, [&image](const PassResources& resources) -> std::unique_ptr<Pass> {
-            upload(resources.planes.create("noisy", image.channels() == 1 ? GL_R32F : GL_RGBA32F, 1), 0, image);
-            return nullptr;
-        }};
-    ScreenSpaceRun run(context, layers, method, {.planes = {"smooth"}}, {given, blur});
-    return run.render("smooth", image.channels());
-}
-
-Image noise(int width, int height, int channels) {
-    std::mt19937 generator(11);
-    std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
-    Image image(width, height, channels);
-    for (float& value : image.values()) value = uniform(generator);
-    return image;
-}
 
 const std::vector<Patch> floor_and_wall = {{{-40.0f, -1.0f, -7.0f}, {80.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 8.0f}},
                                            {{-40.0f, -1.0f, -6.0f}, {80.0f, 0.0f, 0.0f}, {0.0f, 60.0f, 0.0f}}};
@@ -56,12 +29,12 @@ TEST_P(BilateralBlurTest, AgreesWithItsCounterpart) {
         for (const counterpart::Layers& layers :
              {layers_of_patches(view, floor_and_wall), counterpart::random_layers(view, 6)}) {
             SCOPED_TRACE(testing::Message() << "radius " << settings.radius << ", step " << settings.step);
-            const Image image = noise(80, 60, 4);
+            const Image image = noise(80, 60, 4, 11);
             const Image actual = blur(context(), layers, settings, image);
             // The pass sees normals through their 16-bit encoding.
             ScreenSpaceRun encoded(context(), layers, Method{}, {.planes = {"depth"}});
-            const Image rows = counterpart::blurred(encoded.layers(), settings, radius, image, 1, 0);
-            const Image expected = counterpart::blurred(encoded.layers(), settings, radius, rows, 0, 1);
+            const Image rows = counterpart::blurred(encoded.layers(), settings, blurred_radius, image, 1, 0);
+            const Image expected = counterpart::blurred(encoded.layers(), settings, blurred_radius, rows, 0, 1);
             for (std::size_t i = 0; i < actual.values().size(); ++i) {
                 // Positions are good to 1e-6 m and neighbours 1e-2 m apart: the sine off the plane is good to 1e-4,
                 // which the sharpness of 1 and the square multiply by up to 4 in a weight.
@@ -88,7 +61,7 @@ TEST_P(BilateralBlurTest, LeaksNothingAcrossAStepInDepth) {
          {BilateralBlurSettings{}, BilateralBlurSettings{.depth_sharpness = 0.0f},
           BilateralBlurSettings{.plane_sharpness = 0.0f}, BilateralBlurSettings{.monotonic = false}}) {
         for (const bool noise_on_board : {false, true}) {
-            Image image = noise(60, 60, 1);
+            Image image = noise(60, 60, 1, 11);
             for (int y = 0; y < 60; ++y) {
                 for (int x = 0; x < 60; ++x) {
                     if ((layers.depth[0].at(x, y) < 5.0f) != noise_on_board) image.at(x, y) = 0.0f;
@@ -112,7 +85,7 @@ TEST_P(BilateralBlurTest, LeaksNothingAcrossAStepInDepth) {
 
 TEST_P(BilateralBlurTest, LeaksNothingAcrossARightAngle) {
     const counterpart::Layers layers = layers_of_patches(slanted_view(60, 60), floor_and_wall);
-    Image image = noise(60, 60, 1);
+    Image image = noise(60, 60, 1, 11);
     const auto is_floor = [&](int x, int y) { return layers.normal[0].at(x, y, 1) > 0.5f; };
     for (int y = 0; y < 60; ++y) {
         for (int x = 0; x < 60; ++x) {
@@ -141,7 +114,7 @@ TEST_P(BilateralBlurTest, TakesTheNoiseOffAPlane) {
         const double mean = sum / static_cast<double>(image.pixel_count());
         return std::sqrt(squares / static_cast<double>(image.pixel_count()) - mean * mean);
     };
-    const Image image = noise(80, 80, 1);
+    const Image image = noise(80, 80, 1, 11);
     const BilateralBlurSettings settings;
     double weights = 0.0, squares = 0.0;
     for (int i = -settings.radius; i <= settings.radius; ++i) {
@@ -157,7 +130,7 @@ TEST_P(BilateralBlurTest, TakesTheNoiseOffAPlane) {
 
 TEST_P(BilateralBlurTest, DrawsTheViewWithoutItsGuardBandButReadsTheBand) {
     const counterpart::Layers layers = layers_of_patches(slanted_view(40, 40).with_guard_band(10), wall);
-    const Image image = noise(60, 60, 1);
+    const Image image = noise(60, 60, 1, 11);
     const Image whole = blur(context(), layers, {}, image), inner = blur(context(), layers, {}, image, 10);
     for (int y = 10; y < 50; ++y) {
         for (int x = 10; x < 50; ++x) ASSERT_EQ(inner.at(x, y), whole.at(x, y)) << x << ", " << y;
@@ -170,7 +143,7 @@ TEST_P(BilateralBlurTest, ParametersOutOfRangeAreRefused) {
          {BilateralBlurSettings{.radius = 65}, BilateralBlurSettings{.depth_key_bits = 12},
           BilateralBlurSettings{.step = 0}, BilateralBlurSettings{.depth_sharpness = -1.0f},
           BilateralBlurSettings{.plane_sharpness = INFINITY}}) {
-        EXPECT_THROW(blur(context(), layers, settings, noise(8, 8, 1)), MethodError);
+        EXPECT_THROW(blur(context(), layers, settings, noise(8, 8, 1, 11)), MethodError);
     }
 }
 

@@ -2,38 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include "blur_run.h"
 #include "gaussian_blur_counterpart.h"
 #include "gl_test.h"
-#include "rasterizer/bilateral_blur.h"
-#include "screen_space_run.h"
 
 namespace plumb {
 namespace {
 
 using GaussianBlurTest = GlTest;
 PLUMBLINE_BOTH_BACKENDS(GaussianBlurTest);
-
-// Blurs an image that the test makes up.
-Image blur(GlContext& context, const counterpart::Layers& layers, const BilateralBlurSettings& settings,
-           const Image& image) {
-    const PassDeclaration blur =
-        declare_bilateral_blur({.name = "blur", .settings = settings, .input = "noisy", .output = "smooth"});
-    const PassDeclaration given = {
-        "given noise", {}, {"noisy"}, [&image](const PassResources& resources) -> std::unique_ptr<Pass> {
-            upload(resources.planes.create("noisy", image.channels() == 1 ? GL_R32F : GL_RGBA32F, 1), 0, image);
-            return nullptr;
-        }};
-    ScreenSpaceRun run(context, layers, {}, {.planes = {"smooth"}}, {given, blur});
-    return run.render("smooth", image.channels());
-}
-
-Image noise(int width, int height, int channels) {
-    std::mt19937 generator(5);
-    std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
-    Image image(width, height, channels);
-    for (float& value : image.values()) value = uniform(generator);
-    return image;
-}
 
 // Near and far planes between which the layers' depths of 2 to 3 m make differences of all sizes.
 View view_with_planes(int width, int height, float near_plane, float far_plane) {
@@ -49,7 +26,7 @@ TEST_P(GaussianBlurTest, AgreesWithItsCounterpart) {
                 const BilateralBlurSettings settings{.kind = kind, .radius = radius, .step = step};
                 const counterpart::Layers layers =
                     counterpart::random_layers(view_with_planes(70, 50, near_plane, far_plane), 6);
-                const Image image = noise(70, 50, 4);
+                const Image image = noise(70, 50, 4, 5);
                 const Image actual = blur(context(), layers, settings, image);
                 const Image rows = counterpart::gaussian_blurred(layers, settings, image, 1, 0);
                 const Image expected = counterpart::gaussian_blurred(layers, settings, rows, 0, 1);

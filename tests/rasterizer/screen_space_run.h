@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
+#include "layer_upload.h"
 #include "rasterizer/ambient_obscurance.h"
 #include "rasterizer/depth_mip_chain.h"
-#include "rasterizer/normal_encoding.h"
 #include "rasterizer/pass_plan.h"
 #include "rasterizer/radiosity.h"
 #include "rasterizer/texture_transfer.h"
@@ -30,7 +30,11 @@ public:
           planes_(context, layers_.width(), layers_.height()),
           programs_(context),
           view_uniforms_(context) {
-        upload_layers();
+        upload_layers(planes_, layers_);
+        GlTexture& albedo = planes_.create("albedo", GL_RGBA32F, 2);
+        for (int layer = 0; layer < 2; ++layer) {
+            upload(albedo, layer, Image(layers_.width(), layers_.height(), 3, 0.5f));
+        }
         view_uniforms_.update(layers_.view, layers_.view, method_.gbuffer.guard_band);
         std::vector<PassDeclaration> declarations = {
             {"given",
@@ -72,41 +76,6 @@ public:
     const PlaneTextures& planes() const { return planes_; }
 
 private:
-    void upload_layers() {
-        const int width = layers_.width(), height = layers_.height();
-        GlTexture& depth = planes_.create("depth", GL_R32F, 2);
-        GlTexture& normal = planes_.create("normal", GL_RG16, 2);
-        GlTexture& direct = planes_.create("direct", GL_RGBA32F, 2);
-        GlTexture& albedo = planes_.create("albedo", GL_RGBA32F, 2);
-        const glm::mat3 world_from_camera(layers_.view.camera().world_from_camera);
-        for (int layer = 0; layer < 2; ++layer) {
-            Image depth_image = layers_.depth[layer], encoded(width, height, 2);
-            for (float& value : depth_image.values()) {
-                if (value == 0.0f) value = std::numeric_limits<float>::infinity();
-            }
-            const auto for_each_pixel = [&](const auto& action) {
-                for (int y = 0; y < height; ++y) {
-                    for (int x = 0; x < width; ++x) action(encoded.pixel(x, y), layers_.normal[layer].pixel(x, y));
-                }
-            };
-            for_each_pixel([&](auto code, auto n) {
-                const glm::vec3 camera_normal(n[0], n[1], n[2]);
-                if (camera_normal == glm::vec3(0.0f)) return;  // nothing there
-                const glm::vec2 e = encode_normal(world_from_camera * camera_normal);
-                code[0] = e.x, code[1] = e.y;
-            });
-            upload(normal, layer, encoded);
-            encoded = read_back(normal, layer, 2);
-            for_each_pixel([&](auto code, auto n) {
-                const glm::vec3 camera_normal = glm::transpose(world_from_camera) * decode_normal({code[0], code[1]});
-                for (int c = 0; c < 3; ++c) n[c] = camera_normal[c];
-            });
-            upload(depth, layer, depth_image);
-            upload(direct, layer, layers_.radiance[layer]);
-            upload(albedo, layer, Image(width, height, 3, 0.5f));
-        }
-    }
-
     GlContext& context_;
     counterpart::Layers layers_;
     Method method_;
