@@ -28,10 +28,21 @@ Quantities read_quantities(ConfigReader& reader) {
     return quantities;
 }
 
+ExperimentPath read_path(ConfigReader& reader) {
+    ExperimentPath path;
+    path.path = reader.required_text("path");
+    path.start = reader.number("start", path.start, 0.0, 1e6);
+    path.frames = reader.integer("frames", path.frames, 2, 1 << 20);
+    path.frames_per_second = reader.number("frames_per_second", path.frames_per_second, 1e-3, 1e4);
+    reader.finish();
+    return path;
+}
+
 ExperimentScene read_scene(ConfigReader& reader, const ExperimentScene& defaults) {
     ExperimentScene scene = defaults;
     scene.scene = reader.required_text("scene");
     scene.views = reader.texts("views", {});
+    for (ConfigReader& path : reader.tables("paths")) scene.paths.push_back(read_path(path));
     scene.ao_radius = static_cast<float>(reader.number("ao_radius", defaults.ao_radius, 1e-6, infinity));
     scene.indirect_radius =
         static_cast<float>(reader.number("indirect_radius", defaults.indirect_radius, 1e-6, infinity));
@@ -47,16 +58,60 @@ ExperimentScene read_scene(ConfigReader& reader, const ExperimentScene& defaults
     return scene;
 }
 
+// One value of a swept parameter, as a name shows it.
+std::string sweep_text(const ConfigValue& value) {
+    if (const auto* whole = std::get_if<std::int64_t>(&value.value)) return fmt::format("{}", *whole);
+    if (const auto* number = std::get_if<double>(&value.value)) return fmt::format("{:g}", *number);
+    return "";
+}
+
+// The methods that `sweep` makes of a method's table.
+void add_sweep(const ConfigReader& reader, const ConfigValue& table, MethodList& known, MethodSelection& selection) {
+    const auto fail = [&](int line, std::string_view message) {
+        throw ConfigError(fmt::format("{}:{}: methods.sweep: {}", reader.source(), line, message));
+    };
+    ConfigValue plain = table;
+    auto& members = std::get<ConfigMembers>(plain.value);
+    const auto place = std::ranges::find(members, "sweep", &ConfigMember::key);
+    const ConfigValue sweep = place->value;
+    members.erase(place);
+    const auto* swept = std::get_if<ConfigMembers>(&sweep.value);
+    if (!swept || swept->size() != 1)
+        fail(sweep.line, "must be a table with one parameter, such as { \"ao.samples\" = [6, 20, 50] }");
+    const std::string& parameter = swept->front().key;
+    const auto* values = std::get_if<ConfigArray>(&swept->front().value.value);
+    if (!values || values->size() < 2)
+        fail(sweep.line, fmt::format("'{}' must be an array of two values or more", parameter));
+    for (const ConfigValue& value : *values) {
+        const std::string text = sweep_text(value);
+        if (text.empty()) fail(value.line, fmt::format("'{}' must hold numbers, not {}", parameter, value.type_name()));
+        Method method = parse_method(plain, reader.source(), known);
+        const std::string curve = method.name;
+        set_method_parameter(method, fmt::format("{}={}", parameter, text));
+        method.name = fmt::format("{}, {} = {}", curve, parameter, text);
+        selection.sweep_points[method.name] = {curve, parameter, std::stod(text)};
+        known.push_back(method);
+        selection.methods.push_back(std::move(method));
+    }
+}
+
 }  // namespace
 
-MethodList read_methods(ConfigReader& reader) {
+MethodSelection read_methods(ConfigReader& reader) {
     const ConfigValue* tables = reader.value("methods");
     if (!tables) reader.fail("", "'methods' is missing: name at least one method");
     const auto* array = std::get_if<ConfigArray>(&tables->value);
     if (!array || array->empty()) reader.fail("methods", "must be an array with at least one method");
 
-    MethodList known = builtin_methods(), methods;
+    MethodList known = builtin_methods();
+    MethodSelection selection;
+    MethodList& methods = selection.methods;
     for (const ConfigValue& entry : *array) {
+        const auto* members = std::get_if<ConfigMembers>(&entry.value);
+        if (members && std::ranges::find(*members, "sweep", &ConfigMember::key) != members->end()) {
+            add_sweep(reader, entry, known, selection);
+            continue;
+        }
         Method method;
         if (const auto* name = std::get_if<std::string>(&entry.value)) {
             const Method* found = find_method(known, *name);
@@ -70,11 +125,14 @@ MethodList read_methods(ConfigReader& reader) {
             method = parse_method(entry, reader.source(), known);
             known.push_back(method);
         }
-        if (find_method(methods, method.name))
-            reader.fail("methods", fmt::format("two methods are called '{}'", method.name));
         methods.push_back(std::move(method));
     }
-    return methods;
+    std::set<std::string> names;
+    for (const Method& method : methods) {
+        if (!names.insert(method.name).second)
+            reader.fail("methods", fmt::format("two methods are called '{}'", method.name));
+    }
+    return selection;
 }
 
 ExperimentKind kind_of(const ConfigValue& table, const std::filesystem::path& file) {
@@ -143,7 +201,14 @@ Experiment parse_experiment(const ConfigValue& table, const std::filesystem::pat
     for (const ExperimentScene& scene : experiment.scenes) {
         if (!names.insert(scene.scene).second) reader.fail("scenes", fmt::format("'{}' is there twice", scene.scene));
     }
-    experiment.methods = read_methods(reader);
+    experiment.oracle_layers = reader.integers("oracle", {}, 0, 16);
+    MethodSelection selection = read_methods(reader);
+    experiment.methods = std::move(selection.methods);
+    experiment.sweep_points = std::move(selection.sweep_points);
+    auto& presentation = std::get<ConfigMembers>(experiment.presentation.value);
+    for (const char* key : {"figures", "originals", "claims"}) {
+        if (const ConfigValue* tables = reader.value(key)) presentation.push_back({key, *tables});
+    }
     experiment.baseline = reader.text("baseline", experiment.methods.front().name);
     if (!find_method(experiment.methods, experiment.baseline)) {
         std::vector<std::string> methods;
@@ -166,6 +231,8 @@ void make_quick(Experiment& experiment) {
     std::erase_if(experiment.path_tracer_samples, [](int samples) { return samples > 4; });
     for (ExperimentScene& scene : experiment.scenes) {
         if (scene.views.size() > 1) scene.views.resize(1);
+        if (scene.paths.size() > 1) scene.paths.resize(1);
+        for (ExperimentPath& path : scene.paths) path.frames = std::min(path.frames, 3);
     }
     experiment.quick = true;
 }

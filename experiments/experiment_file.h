@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -13,9 +14,18 @@
 
 namespace plumb {
 
+// A walk along one of a scene's camera paths, frame by frame; instances that move are where they are at that time.
+struct ExperimentPath {
+    std::string path;
+    double start = 0.0;  // seconds, on the path
+    int frames = 12;
+    double frames_per_second = 30.0;
+};
+
 struct ExperimentScene {
-    std::string scene;                // a built-in scene's name or a scene file
-    std::vector<std::string> views;   // camera names; empty: all
+    std::string scene;               // a built-in scene's name or a scene file
+    std::vector<std::string> views;  // camera names; empty: all
+    std::vector<ExperimentPath> paths;
     float ao_radius = 1.0f;           // metres
     float indirect_radius = 1.0f;     // metres; what methods gather from, and the limit of the limited truth
     float minimum_separation = 0.1f;  // metres between the layers
@@ -35,6 +45,12 @@ struct ExperimentTiming {
     int repetitions = 7;  // frames timed per method, interleaved
 };
 
+// Where a method stands on a curve of methods that differ in one parameter.
+struct SweepPoint {
+    std::string curve, parameter;
+    double value = 0.0;
+};
+
 struct Experiment {
     std::string name;
     std::string title;
@@ -46,8 +62,14 @@ struct Experiment {
     ExperimentReference reference;
     ExperimentTiming timing;
     std::vector<int> path_tracer_samples = {4, 16};  // the path tracer's own points in the chart; empty: none
+    // Layers that the oracle's rows may see, the best that any method could make of them; 0: all that is in view.
+    std::vector<int> oracle_layers;
     std::vector<ExperimentScene> scenes;
     MethodList methods;
+    std::map<std::string, SweepPoint> sweep_points;  // of the methods that a sweep made, by their names
+    // The tables `figures`, `originals` and `claims` as the file has them: what is made of the results, never of
+    // pixels.
+    ConfigValue presentation{ConfigMembers{}, 0};
     bool quick = false;    // only the first view of each scene
     std::string baseline;  // the method that others are set against in the summary; the first by default
 };
@@ -61,8 +83,14 @@ enum class ExperimentKind {
 // What the key `kind` says; comparison where it is missing. Throws ConfigError.
 ExperimentKind kind_of(const ConfigValue& table, const std::filesystem::path& file);
 
-// The key `methods`: names of methods, or tables. Throws ConfigError.
-MethodList read_methods(ConfigReader& reader);
+struct MethodSelection {
+    MethodList methods;
+    std::map<std::string, SweepPoint> sweep_points;
+};
+
+// The key `methods`: names of methods, or tables. A table with `sweep = { "ao.samples" = [6, 20, 50] }` makes one
+// method per value, named "NAME, ao.samples = 6"...; NAME itself is then no method. Throws ConfigError.
+MethodSelection read_methods(ConfigReader& reader);
 
 // Throws ConfigError with file and line.
 Experiment parse_experiment(const ConfigValue& table, const std::filesystem::path& file);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,8 +19,30 @@ struct Timing {
     std::vector<PassTiming> passes;  // medians; of the path tracer: one
 };
 
+// The error over some of a view's pixels (metrics/regions.h).
+struct RegionError {
+    std::string region;
+    std::size_t pixels = 0;
+    double mse = 0.0, mse_lower = 0.0, mse_upper = 0.0;  // free of the reference's noise
+};
+
+// One frame of a camera path.
+struct FrameMeasure {
+    double time = 0.0;     // seconds, on the path
+    double rmse = 0.0;     // free of the reference's noise
+    double flicker = 0.0;  // since the frame before; NaN for the first
+};
+
+// How steady the error is over a camera path (metrics/path_stability.h), with 95 % intervals.
+struct Stability {
+    double flicker = 0.0, flicker_lower = 0.0, flicker_upper = 0.0;
+    double method_warping = 0.0, truth_warping = 0.0;
+    double temporal_variance = 0.0;
+};
+
 struct ResultRow {
     std::string scene, view, plane, method;
+    std::string path;             // a camera path; `view` is empty then, and errors are over all of its frames
     std::string truth;            // which of two truths, for planes that have two; else empty
     int path_tracer_samples = 0;  // per pixel; 0: a method. The path tracer's own rows draw its curve
     Method parameters;            // as the method ran in this scene
@@ -32,10 +55,19 @@ struct ResultRow {
     double noise_mse = 0.0;                                // of the reference
     double data_range = 1.0;                               // peak of PSNR, range of SSIM
     int reference_samples = 0;                             // per pixel
+    std::vector<RegionError> regions;
+    std::vector<FrameMeasure> frames;    // of a path
+    std::optional<Stability> stability;  // of a path
+
+    std::string curve, curve_parameter;  // of a method that a sweep made; empty: none
+    double curve_value = 0.0;
+    int oracle_layers = -1;  // the oracle with so many layers, 0 for all in view; it takes no time. -1: a method
 
     Timing timing;
     int gbuffer_bytes_per_pixel = 0;  // as far as this plane needs a G-buffer; the path tracer's rows: 0
 
+    bool is_method() const { return path_tracer_samples == 0 && oracle_layers < 0; }
+    const std::string& place() const { return path.empty() ? view : path; }
     double rmse() const;
     double rmse_lower() const;
     double rmse_upper() const;
@@ -54,6 +86,23 @@ struct PictureSet {
     double error_scale = 1.0;   // the error that takes the map's last colour
     std::string exposure_note;  // how radiance became a picture
     std::vector<Picture> images;
+};
+
+// What a method, the truth or an error map shows along a camera path, one picture per frame.
+struct PathPictureStrip {
+    std::string label;               // "truth" or a method's name
+    std::string kind;                // "truth", "method" or "error"
+    std::vector<std::string> files;  // relative to the results folder
+    std::vector<double> rmse;        // per frame; of a method
+    std::vector<double> flicker;     // per frame, NaN for the first; of a method
+};
+
+struct PathPictures {
+    std::string scene, path, plane, truth;
+    double frames_per_second = 30.0;
+    double error_scale = 1.0;
+    std::string exposure_note;
+    std::vector<PathPictureStrip> strips;
 };
 
 struct CellFailure {
@@ -79,6 +128,7 @@ struct RunResults {
     bool interrupted = false;
     std::vector<ResultRow> rows;
     std::vector<PictureSet> pictures;
+    std::vector<PathPictures> path_pictures;
     std::vector<ReferenceUse> references;
     std::vector<CellFailure> failures;
     std::map<std::string, std::string> scene_hashes;
