@@ -1,11 +1,12 @@
 #include "experiments/pictures.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 
 #include <fmt/format.h>
 
+#include "experiments/packed_plane.h"
+#include "frames/atomic_file.h"
 #include "frames/exr.h"
 #include "frames/picture.h"
 #include "metrics/comparison.h"
@@ -14,16 +15,6 @@
 namespace plumb {
 namespace {
 
-// Rounded up to one or two leading digits, so that legends read well.
-double round_up_scale(double value) {
-    if (!(value > 0.0) || !std::isfinite(value)) return 1e-6;
-    const double magnitude = std::pow(10.0, std::floor(std::log10(value)));
-    for (const double step : {1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0}) {
-        if (value <= step * magnitude * (1.0 + 1e-9)) return step * magnitude;
-    }
-    return 10.0 * magnitude;
-}
-
 struct Subject {
     std::string plane, truth;
     bool operator==(const Subject&) const = default;
@@ -31,9 +22,9 @@ struct Subject {
 
 class PictureWriter {
 public:
-    PictureWriter(const SceneRun& run, const std::string& scene, const std::filesystem::path& folder,
-                  RunResults& results)
-        : run_(run), scene_(scene), folder_(folder), results_(results) {}
+    PictureWriter(const SceneRun& run, const Experiment& experiment, const std::string& scene,
+                  const std::filesystem::path& folder, RunResults& results)
+        : run_(run), experiment_(experiment), scene_(scene), folder_(folder), results_(results) {}
 
     void write(const Subject& subject) {
         const double scale = error_scale(subject);
@@ -55,7 +46,8 @@ private:
     template <class Function>
     void for_each_method(const Subject& subject, const std::string& view, Function&& function) const {
         for (const PlaneImage& image : run_.images()) {
-            if (image.plane == subject.plane && image.view == view && image.path_tracer_samples == 0) function(image);
+            const bool wanted = image.plane == subject.plane && image.view == view;
+            if (wanted && find_method(experiment_.methods, image.method)) function(image);
         }
     }
 
@@ -79,36 +71,41 @@ private:
         PictureSettings look;
         // Just below white, and of the full truth, so that both truths and the methods look alike.
         const Image& exposed = run_.truths().at(view).full.frame.plane(subject.plane);
-        look.exposure = static_cast<float>(std::log2(0.9 / default_data_range(subject.plane, exposed)));
+        look.exposure = exposure_for(default_data_range(subject.plane, exposed));
 
         PictureSet set;
         set.scene = scene_, set.view = view, set.plane = subject.plane, set.truth = subject.truth;
         set.error_scale = scale;
-        if (subject.plane != "ao" && subject.plane != "depth") {
-            set.exposure_note = fmt::format("pictures: exposure {:+.1f} stops, then sRGB", look.exposure);
-        }
+        set.exposure = look.exposure;
+        set.exposure_note = exposure_note(subject.plane, look.exposure);
         const std::string stem =
             fmt::format("pictures/{}.{}.{}", file_name_of(scene_), file_name_of(view), file_name_of(subject.plane));
         const std::string suffix = subject.truth.empty() ? "" : fmt::format(".{}", file_name_of(subject.truth));
 
-        add(set,
-            {"truth", "truth", stem + ".truth" + suffix + ".png", fmt::format("{} samples per pixel", truth.samples)},
-            picture_of_plane(subject.plane, reference, look));
+        add_values(set, {"truth", "truth", fmt::format("{}.truth{}", stem, suffix), note_of(truth)}, reference, look);
         for_each_method(subject, view, [&](const PlaneImage& image) {
-            const std::string method = file_name_of(image.method);
-            add(set, {image.method, "method", fmt::format("{}.{}.png", stem, method), note_of(subject, image)},
-                picture_of_plane(subject.plane, image.image, look));
+            const std::string name = fmt::format("{}.{}", stem, file_name_of(image.method));
+            add_values(set, {image.method, "method", name, note_of(subject, image)}, image.image, look);
             const Image error = mean_of_channels(absolute_error(image.image, reference));
-            add(set, {image.method, "error", fmt::format("{}.{}.error{}.png", stem, method, suffix), ""},
-                apply_colour_map(error, error_colour_map, 0.0f, static_cast<float>(scale)));
+            const std::string file = fmt::format("{}.error{}.png", name, suffix);
+            write_png(folder_ / file, apply_colour_map(error, error_colour_map, 0.0f, static_cast<float>(scale)));
+            set.images.push_back({image.method, "error", file, "", ""});
         });
         results_.pictures.push_back(std::move(set));
     }
 
-    void add(PictureSet& set, Picture picture, const Image& displayed) {
-        write_png(folder_ / picture.file, displayed);
-        set.images.push_back(std::move(picture));
+    struct Named {
+        std::string label, kind, stem, note;
+    };
+
+    void add_values(PictureSet& set, const Named& named, const Image& image, const PictureSettings& look) const {
+        const Picture picture{named.label, named.kind, named.stem + ".png", named.note, named.stem + ".plane"};
+        write_png(folder_ / picture.file, picture_of_plane(set.plane, image, look));
+        write_text_atomically(folder_ / picture.values, pack_plane(image));
+        set.images.push_back(picture);
     }
+
+    static std::string note_of(const Truth& truth) { return fmt::format("{} samples per pixel", truth.samples); }
 
     std::string note_of(const Subject& subject, const PlaneImage& image) const {
         for (const ResultRow& row : results_.rows) {
@@ -120,6 +117,7 @@ private:
     }
 
     const SceneRun& run_;
+    const Experiment& experiment_;
     const std::string& scene_;
     const std::filesystem::path& folder_;
     RunResults& results_;
@@ -130,7 +128,7 @@ private:
 
 void write_pictures(const SceneRun& run, const Experiment& experiment, const std::string& scene,
                     const std::filesystem::path& folder, RunResults& results) {
-    PictureWriter writer(run, scene, folder, results);
+    PictureWriter writer(run, experiment, scene, folder, results);
     std::vector<Subject> written;
     for (const std::string& plane : experiment.planes) {
         for (const auto& [view, truths] : run.truths()) {
@@ -170,15 +168,6 @@ void write_frames(const SceneRun& run, const Experiment& experiment, const std::
             if (!frame.plane_names().empty()) write(std::move(frame), method.name);
         }
     }
-}
-
-std::string file_name_of(std::string_view name) {
-    std::string result(name);
-    for (char& letter : result) {
-        const bool plain = std::isalnum(static_cast<unsigned char>(letter)) || letter == '-' || letter == '_';
-        if (!plain) letter = '_';
-    }
-    return result;
 }
 
 }  // namespace plumb

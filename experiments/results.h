@@ -74,16 +74,18 @@ struct ResultRow {
 };
 
 struct Picture {
-    std::string label;  // "truth" or a method's name
-    std::string kind;   // "truth", "method" or "error"
-    std::string file;   // relative to the results folder
-    std::string note;   // "RMSE 0.03, 12 ms"
+    std::string label;        // "truth" or a method's name
+    std::string kind;         // "truth", "method" or "error"
+    std::string file;         // relative to the results folder
+    std::string note;         // "RMSE 0.03, 12 ms"
+    std::string values = {};  // of truth and methods: the packed plane (packed_plane.h), relative to the same folder
 };
 
 // The pictures of one view and plane, alike in exposure, and their error maps, alike in scale.
 struct PictureSet {
     std::string scene, view, plane, truth;
     double error_scale = 1.0;   // the error that takes the map's last colour
+    float exposure = 0.0f;      // stops
     std::string exposure_note;  // how radiance became a picture
     std::vector<Picture> images;
 };

@@ -58,6 +58,35 @@ Image scaled(Image image, float factor) {
     return image;
 }
 
+// The bytes of a file of 8 bits a channel; `format` is the extension of its name.
+std::string encode(const Image& displayed, const std::string& format, OIIO::ImageSpec spec) {
+    check_channels(displayed, "display values", {1, 3});
+    if (displayed.empty()) throw ImageError(fmt::format("a picture of no pixels cannot be written as {}", format));
+    std::vector<std::uint8_t> bytes;
+    bytes.reserve(displayed.values().size());
+    for (const float value : displayed.values()) {
+        const float clamped = std::isnan(value) ? 0.0f : std::clamp(value, 0.0f, 1.0f);
+        bytes.push_back(static_cast<std::uint8_t>(std::lround(clamped * 255.0f)));
+    }
+    spec["oiio:ColorSpace"] = "sRGB";
+    std::vector<unsigned char> file;
+    OIIO::Filesystem::IOVecOutput memory(file);
+    void* proxy = &memory;
+    spec.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+    const std::string name = fmt::format("memory.{}", format);
+    const auto output = OIIO::ImageOutput::create(name);
+    if (!output || !output->open(name, spec) || !output->write_image(OIIO::TypeDesc::UINT8, bytes.data()) ||
+        !output->close()) {
+        throw ImageError(fmt::format("cannot encode a {} of {}x{} pixels: {}", format, displayed.width(),
+                                     displayed.height(), output ? output->geterror() : OIIO::geterror()));
+    }
+    return {file.begin(), file.end()};
+}
+
+OIIO::ImageSpec byte_spec(const Image& image) {
+    return OIIO::ImageSpec(image.width(), image.height(), image.channels(), OIIO::TypeDesc::UINT8);
+}
+
 }  // namespace
 
 Image picture_of_radiance(const Image& radiance, float exposure, ToneCurve curve) {
@@ -108,28 +137,13 @@ Image picture_of_plane(std::string_view plane, const Image& image, const Picture
     return picture_of_radiance(with_bloom(image, settings.bloom), settings.exposure, settings.tone_curve);
 }
 
-std::string encode_png(const Image& displayed) {
-    check_channels(displayed, "display values", {1, 3});
-    if (displayed.empty()) throw ImageError("a picture of no pixels cannot be written as PNG");
-    std::vector<std::uint8_t> bytes;
-    bytes.reserve(displayed.values().size());
-    for (const float value : displayed.values()) {
-        const float clamped = std::isnan(value) ? 0.0f : std::clamp(value, 0.0f, 1.0f);
-        bytes.push_back(static_cast<std::uint8_t>(std::lround(clamped * 255.0f)));
-    }
-    OIIO::ImageSpec spec(displayed.width(), displayed.height(), displayed.channels(), OIIO::TypeDesc::UINT8);
-    spec["oiio:ColorSpace"] = "sRGB";
-    std::vector<unsigned char> file;
-    OIIO::Filesystem::IOVecOutput memory(file);
-    void* proxy = &memory;
-    spec.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-    const auto output = OIIO::ImageOutput::create("memory.png");
-    if (!output || !output->open("memory.png", spec) || !output->write_image(OIIO::TypeDesc::UINT8, bytes.data()) ||
-        !output->close()) {
-        throw ImageError(fmt::format("cannot encode a PNG of {}x{} pixels: {}", displayed.width(), displayed.height(),
-                                     output ? output->geterror() : OIIO::geterror()));
-    }
-    return {file.begin(), file.end()};
+std::string encode_png(const Image& displayed) { return encode(displayed, "png", byte_spec(displayed)); }
+
+std::string encode_jpeg(const Image& displayed, int quality) {
+    OIIO::ImageSpec spec = byte_spec(displayed);
+    spec["Compression"] = fmt::format("jpeg:{}", quality);
+    spec["jpeg:subsampling"] = "4:4:4";
+    return encode(displayed, "jpg", spec);
 }
 
 void write_png(const std::filesystem::path& path, const Image& displayed) {

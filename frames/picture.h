@@ -38,5 +38,8 @@ void write_png(const std::filesystem::path& path, std::string_view plane, const 
                const PictureSettings& settings = {});
 // The bytes of such a file, for pages that contain their pictures.
 std::string encode_png(const Image& displayed);
+// The same as JPEG, without subsampling of colour: smaller where there are many, and never to be measured. `quality` is
+// 1 to 100.
+std::string encode_jpeg(const Image& displayed, int quality);
 
 }  // namespace plumb

@@ -12,7 +12,7 @@ packages=(
     # files
     libopenimageio-dev openimageio-tools libopenexr-dev libassimp-dev libtomlplusplus-dev nlohmann-json3-dev
     # program
-    libcli11-dev libfmt-dev libxxhash-dev libjs-chart.js
+    libcli11-dev libfmt-dev libxxhash-dev zlib1g-dev libjs-chart.js
     # tests and benchmarks
     libgtest-dev libgmock-dev libbenchmark-dev
 )
