@@ -29,6 +29,7 @@ constexpr const char* examples = R"(Examples:
   plumbline reference cornell --samples 256               the same view, path traced
   plumbline compare a.exr b.exr --fail-above rmse=0.01    two images, and a gate for scripts
   plumbline run experiments/one_vs_two_layers.toml        a whole experiment: table, files, page
+  plumbline check experiments/ci.toml                     the same held against limits: a gate for CI
   plumbline COMMAND --help                                the options of one command
 
 Exit codes: 0 fine, 1 a threshold or comparison failed, 2 wrong use or bad input, 3 the environment lacks something,
@@ -98,6 +99,7 @@ int run_command_line(int argc, const char* const* argv) {
     add_reference_command(app, common, action);
     add_compare_command(app, common, action);
     add_run_command(app, common, action);
+    add_check_command(app, common, action);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

@@ -26,6 +26,7 @@ void add_scenes_command(CLI::App& app, const CommonOptions& common, Action& acti
 void add_render_command(CLI::App& app, const CommonOptions& common, Action& action);
 void add_reference_command(CLI::App& app, const CommonOptions& common, Action& action);
 void add_compare_command(CLI::App& app, const CommonOptions& common, Action& action);
+void add_check_command(CLI::App& app, const CommonOptions& common, Action& action);
 void add_run_command(CLI::App& app, const CommonOptions& common, Action& action);
 
 // Parses the command line, runs the subcommand, and turns errors into a message and an exit code.
