@@ -11,11 +11,17 @@
 // Knaus, Zwicker 2012, "Adaptive Rendering with Non-Local Means Filtering".) The estimate may come out below zero where
 // the error is lost in the noise.
 //
-// The 95 % interval is the percentile interval of a block bootstrap (Efron 1979; blocks: Kuensch 1989): square blocks
-// of pixels are drawn with replacement. Pixels cannot be drawn one by one: errors of neighbours are alike over the
-// width of filters and gathering radii. Blocks are 32 pixels wide, wider than the blurs; where that leaves fewer than
-// 64 blocks, which makes percentiles coarse, they are halved until it does not. The interval covers both the noise and
-// how evenly the error is spread over the image; it is the same on every run (fixed seed).
+// An image under test may be noisy for reasons that are not its error: what the oracle makes of two layers, with ever
+// more samples. Where it comes as two halves of its own, its noise is taken out as well:
+//
+//   mse = mean (Ia - A)(Ib - B)
+//
+// E[(Ia - A)(Ib - B)] = E[Ia - A] E[Ib - B] = (I - T)^2, because what has to do with half a (Ia and A) is independent
+// of what has to do with half b (Ib and B). Ia and A need not be independent of each other: rendered with the same
+// seed, the noise they share even cancels, and the estimate is the steadier for it.
+//
+// The 95 % interval is that of a block bootstrap (block_bootstrap.h). It covers both the noise and how evenly the error
+// is spread over the image.
 //
 // `trustworthy` asks for two things: the reference's noise is at most a tenth of the error (noise_limit), and the
 // interval excludes zero. A tenth, because measures which have no unbiased form (SSIM, percentiles, relative MSE, the
@@ -29,14 +35,13 @@
 #include <string_view>
 
 #include "frames/frame.h"
+#include "metrics/block_bootstrap.h"
 
 namespace plumb {
 
 struct ReferencedErrorSettings {
-    double noise_limit = 0.1;  // largest share of the error that the reference's noise may have
-    int block_size = 32;       // pixels, at most; halved for small images
-    int resamples = 1000;      // bootstrap draws: the 2.5 % tail then holds 25
-    std::uint64_t seed = 1;
+    double noise_limit = 0.1;  // largest share of the error that the noise may have
+    BootstrapSettings bootstrap;
     const Image* mask = nullptr;  // pixels that count
 };
 
@@ -44,7 +49,7 @@ struct ReferencedError {
     double mse = 0;                  // unbiased
     double lower = 0, upper = 0;     // 95 % interval of mse
     double plain_mse = 0;            // mean (I - R)^2, biased upwards by the noise
-    double reference_noise_mse = 0;  // mean variance of R
+    double reference_noise_mse = 0;  // mean variance of R; of I - R where I comes as two halves
     double ratio = 0;                // reference_noise_mse / mse; infinite where mse is not positive but the noise is
     bool trustworthy = false;
     double noise_limit = 0;
@@ -62,8 +67,16 @@ struct ReferencedError {
 ReferencedError referenced_error(const Image& test, const Image& half_a, const Image& half_b, int reference_samples,
                                  const ReferencedErrorSettings& settings = {});
 
+// Of an image that comes as two halves, each independent of the other half of both.
+ReferencedError paired_referenced_error(const Image& test_a, const Image& test_b, const Image& half_a,
+                                        const Image& half_b, int reference_samples,
+                                        const ReferencedErrorSettings& settings = {});
+
 // The same of a plane of two frames; the reference has "half_a." and "half_b." of it.
 ReferencedError referenced_error(const Frame& method, const Frame& reference, std::string_view plane,
                                  int reference_samples, const ReferencedErrorSettings& settings = {});
+// Both have halves.
+ReferencedError paired_referenced_error(const Frame& method, const Frame& reference, std::string_view plane,
+                                        int reference_samples, const ReferencedErrorSettings& settings = {});
 
 }  // namespace plumb

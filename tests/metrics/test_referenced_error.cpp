@@ -53,7 +53,7 @@ TEST(ReferencedError, IsFreeOfTheNoiseThatThePlainErrorHas) {
     std::mt19937 random(11);
     double sum = 0, squares = 0, plain = 0, noise_sum = 0;
     ReferencedErrorSettings quick;
-    quick.resamples = 40;  // the interval is not looked at here
+    quick.bootstrap.resamples = 40;  // the interval is not looked at here
     for (int i = 0; i < draws; ++i) {
         const Draw draw = make_draw(random, 0.02f, 0.1f);
         const ReferencedError error = referenced_error(draw.test, draw.half_a, draw.half_b, 16, quick);
@@ -96,8 +96,8 @@ TEST(ReferencedError, BlocksKeepTheIntervalHonestWhereErrorsOfNeighboursAreAlike
     std::normal_distribution<float> normal;
     int covered_by_blocks = 0, covered_by_pixels = 0;
     ReferencedErrorSettings pixels;
-    pixels.block_size = 1;
-    pixels.resamples = 100;
+    pixels.bootstrap.block_size = 1;
+    pixels.bootstrap.resamples = 100;
     for (int i = 0; i < draws; ++i) {
         Draw draw = make_draw(random, 0.0f, 0.01f);
         for (int by = 0; by < height; by += 8) {
