@@ -36,12 +36,6 @@ private:
     std::uint64_t state_;
 };
 
-double mean_of(const std::vector<BlockSum>& blocks) {
-    BlockSum total;
-    for (const BlockSum& block : blocks) total.sum += block.sum, total.values += block.values;
-    return total.values == 0 ? std::numeric_limits<double>::quiet_NaN() : total.sum / static_cast<double>(total.values);
-}
-
 void require_resamples(int resamples) {
     if (resamples < fewest_resamples) {
         throw ImageError(
@@ -79,6 +73,12 @@ std::vector<std::vector<BlockSum>> in_runs(const std::vector<std::vector<BlockSu
 }
 
 }  // namespace
+
+double mean_of(const std::vector<BlockSum>& blocks) {
+    BlockSum total;
+    for (const BlockSum& block : blocks) total.sum += block.sum, total.values += block.values;
+    return total.values == 0 ? std::numeric_limits<double>::quiet_NaN() : total.sum / static_cast<double>(total.values);
+}
 
 Estimate Estimate::root() const {
     // Not std::max, which would make a zero of a NaN.

@@ -38,11 +38,15 @@ struct BlockSum {
     double sum = 0;
     std::size_t values = 0;
 
-    void add(double value) {
+    // A value, or the sum of `count` of them.
+    void add(double value, std::size_t count = 1) {
         sum += value;
-        ++values;
+        values += count;
     }
 };
+
+// Over the values of all blocks; NaN where there are none.
+double mean_of(const std::vector<BlockSum>& blocks);
 
 // Which block a pixel is in. Blocks of the wanted size are halved until 64 of them hold pixels that count: fewer make
 // percentiles coarse.
@@ -52,6 +56,7 @@ public:
     BlockGrid(int width, int height, int largest_size, const Image* mask = nullptr);
 
     int block_size() const { return size_; }
+    int rows() const { return rows_; }
     std::size_t count() const { return static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_); }
     std::size_t block_of(int x, int y) const {
         return static_cast<std::size_t>(y / size_) * static_cast<std::size_t>(columns_) +

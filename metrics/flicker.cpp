@@ -1,126 +1,137 @@
 #include "metrics/flicker.h"
 
-#include <array>
+#include <algorithm>
 #include <cmath>
-#include <limits>
-#include <span>
+#include <optional>
+#include <string>
 
 #include <fmt/format.h>
 
 #include "frames/image_error.h"
+#include "frames/parallel.h"
+#include "metrics/error_image.h"
 #include "metrics/shape.h"
 
 namespace plumb {
 namespace {
 
-struct Tap {
-    int x, y;
-    double weight;
-};
-
-// The pixels that a bilinear look-up at (x, y) reads, in units of pixel indices; weight 0 for those it does not need.
-std::array<Tap, 4> bilinear_taps(double x, double y) {
-    const double x0 = std::floor(x), y0 = std::floor(y);
-    const double fx = x - x0, fy = y - y0;
-    const int ix = static_cast<int>(x0), iy = static_cast<int>(y0);
-    return {{{ix, iy, (1 - fx) * (1 - fy)},
-             {ix + 1, iy, fx * (1 - fy)},
-             {ix, iy + 1, (1 - fx) * fy},
-             {ix + 1, iy + 1, fx * fy}}};
-}
-
-double distance(std::span<const float> a, std::span<const float> b) {
-    return std::hypot(double{a[0]} - b[0], double{a[1]} - b[1], double{a[2]} - b[2]);
-}
-
-bool same_surface(const std::array<Tap, 4>& taps, const Image& position_before, std::span<const float> position,
-                  double radius) {
-    for (const Tap& tap : taps) {
-        if (tap.weight == 0.0) continue;
-        if (tap.x < 0 || tap.y < 0 || tap.x >= position_before.width() || tap.y >= position_before.height())
-            return false;
-        // Written so that a NaN is not the same surface.
-        if (!(distance(position_before.pixel(tap.x, tap.y), position) <= radius)) return false;
-    }
-    return true;
-}
-
-double look_up(const Image& image, const std::array<Tap, 4>& taps, int channel) {
-    double sum = 0;
-    for (const Tap& tap : taps) {
-        if (tap.weight > 0.0) sum += tap.weight * image.at(tap.x, tap.y, channel);
-    }
-    return sum;
-}
-
-void require_channels(const Image& image, int channels, std::string_view plane) {
-    if (image.channels() != channels) {
-        throw ImageError(fmt::format("plane '{}' of the truth has {} channels; flicker needs {}", plane,
-                                     image.channels(), channels));
-    }
-}
-
-// Sums of squared changes over one pixel's channels.
+// Sums over one pixel's channels.
 struct Changes {
-    double error = 0, method = 0, truth = 0;
+    double error = 0, method = 0, truth = 0, noise = 0;
 };
+
+Changes changes_at(const FrameErrors& before, const FrameErrors& now, const BilinearPlace& place, int x, int y) {
+    Changes changes;
+    for (int c = 0; c < now.method.channels(); ++c) {
+        const double method = now.method.at(x, y, c) - place.look_up(before.method, c);
+        const double a = now.error_a.at(x, y, c) - place.look_up(before.error_a, c);
+        const double b = now.error_b.at(x, y, c) - place.look_up(before.error_b, c);
+        changes.error += a * b;
+        changes.method += method * method;
+        changes.truth += (method - a) * (method - b);
+        changes.noise += 0.25 * (a - b) * (a - b);
+    }
+    return changes;
+}
+
+void require_motion_planes(const FrameErrors& frame, int width, int height) {
+    if (frame.motion.width() != width || frame.depth.width() != width || frame.position.width() != width ||
+        frame.motion.height() != height || frame.depth.height() != height || frame.position.height() != height) {
+        throw ImageError(fmt::format("planes motion, depth and position of the truth must be {}x{} as the images are",
+                                     width, height));
+    }
+}
 
 }  // namespace
 
+FrameErrors FrameErrors::of(const Frame& method, const Frame& truth, std::string_view plane) {
+    FrameErrors frame;
+    frame.method = method.plane(plane);
+    const std::string a = fmt::format("half_a.{}", plane), b = fmt::format("half_b.{}", plane);
+    const bool halves = truth.has(a) && truth.has(b);
+    for (const auto& [error, name] : {std::pair{&frame.error_a, halves ? a : std::string(plane)},
+                                      {&frame.error_b, halves ? b : std::string(plane)}}) {
+        require_same_shape(frame.method, truth.plane(name), fmt::format("plane '{}' of method and truth", name));
+        *error = signed_difference(frame.method, truth.plane(name));
+    }
+    for (const auto& [image, name] :
+         {std::pair{&frame.motion, "motion"}, {&frame.depth, "depth"}, {&frame.position, "position"}}) {
+        if (truth.has(name)) *image = truth.plane(name);
+    }
+    return frame;
+}
+
+ChangeSums sum_changes(const FrameErrors& before, const FrameErrors& now, const BlockGrid& grid, double tolerance,
+                       const Image* mask) {
+    require_same_shape(before.method, now.method, "images of two frames");
+    const int width = now.method.width(), height = now.method.height();
+    require_motion_planes(now, width, height);
+    require_same_shape(before.position, now.position, "plane 'position' of two frames");
+    if (mask) require_mask_fits(*mask, now.method);
+
+    ChangeSums sums;
+    for (auto* blocks : {&sums.error, &sums.method, &sums.truth, &sums.noise}) blocks->resize(grid.count());
+    struct Counts {
+        std::size_t pixels = 0, not_visible = 0, non_finite = 0;
+    };
+    std::vector<Counts> counts(static_cast<std::size_t>(grid.rows()));
+    // A row of blocks belongs to one thread: the same bits whatever the number of threads.
+    parallel_for(grid.rows(), [&](int row) {
+        Counts& count = counts[static_cast<std::size_t>(row)];
+        const int end = std::min(height, (row + 1) * grid.block_size());
+        for (int y = row * grid.block_size(); y < end; ++y) {
+            for (int x = 0; x < width; ++x) {
+                if (!pixel_counts(mask, x, y)) continue;
+                const auto place = place_before(now.motion, now.depth, now.position, before.position, x, y, tolerance);
+                if (!place) {
+                    ++count.not_visible;
+                    continue;
+                }
+                const Changes changes = changes_at(before, now, *place, x, y);
+                if (!std::isfinite(changes.error) || !std::isfinite(changes.truth)) {
+                    ++count.non_finite;
+                    continue;
+                }
+                ++count.pixels;
+                const std::size_t block = grid.block_of(x, y);
+                const auto channels = static_cast<std::size_t>(now.method.channels());
+                sums.error[block].add(changes.error, channels);
+                sums.method[block].add(changes.method, channels);
+                sums.truth[block].add(changes.truth, channels);
+                sums.noise[block].add(changes.noise, channels);
+            }
+        }
+    });
+    for (const Counts& count : counts) {
+        sums.pixels += count.pixels;
+        sums.not_visible += count.not_visible;
+        sums.non_finite += count.non_finite;
+    }
+    return sums;
+}
+
+Flicker flicker_of(const ChangeSums& sums, const BootstrapSettings& settings) {
+    Flicker result;
+    const Estimate rms = bootstrap_mean(sums.error, settings).root();
+    result.rms = rms.value, result.rms_lower = rms.lower, result.rms_upper = rms.upper;
+    const auto root_mean = [](const std::vector<BlockSum>& blocks) {
+        return Estimate{mean_of(blocks), 0.0, 0.0}.root().value;
+    };
+    result.method_warping = root_mean(sums.method);
+    result.truth_warping = root_mean(sums.truth);
+    result.noise = root_mean(sums.noise);
+    result.pixels = sums.pixels, result.not_visible = sums.not_visible, result.non_finite = sums.non_finite;
+    return result;
+}
+
 Flicker flicker(const Frame& method_before, const Frame& truth_before, const Frame& method_now, const Frame& truth_now,
                 std::string_view plane, const FlickerSettings& settings) {
-    const Image &method = method_now.plane(plane), &method_past = method_before.plane(plane);
-    const Image &truth = truth_now.plane(plane), &truth_past = truth_before.plane(plane);
-    const Image &motion = truth_now.plane("motion"), &depth = truth_now.plane("depth");
-    const Image &position = truth_now.plane("position"), &position_past = truth_before.plane("position");
-    for (const Image* image : {&method_past, &truth_past, &method}) {
-        require_same_shape(*image, truth, fmt::format("plane '{}' of two frames", plane));
-    }
-    require_same_shape(position_past, position, "plane 'position' of two frames");
-    require_channels(motion, 2, "motion");
-    require_channels(depth, 1, "depth");
-    require_channels(position, 3, "position");
-
-    Flicker result;
-    Changes sums;
-    for (int y = 0; y < truth.height(); ++y) {
-        for (int x = 0; x < truth.width(); ++x) {
-            const double before_x = x + double{motion.at(x, y, 0)}, before_y = y + double{motion.at(x, y, 1)};
-            const bool inside =
-                before_x > -1.0 && before_x < truth.width() && before_y > -1.0 && before_y < truth.height();
-            const bool surface = std::isfinite(depth.at(x, y)) && depth.at(x, y) > 0.0f;
-            const auto taps = inside ? bilinear_taps(before_x, before_y) : std::array<Tap, 4>{};
-            if (!inside || !surface ||
-                !same_surface(taps, position_past, position.pixel(x, y), settings.tolerance * depth.at(x, y))) {
-                ++result.not_visible;
-                continue;
-            }
-            Changes changes;
-            for (int c = 0; c < truth.channels(); ++c) {
-                const double of_method = method.at(x, y, c) - look_up(method_past, taps, c);
-                const double of_truth = truth.at(x, y, c) - look_up(truth_past, taps, c);
-                changes.error += (of_method - of_truth) * (of_method - of_truth);
-                changes.method += of_method * of_method;
-                changes.truth += of_truth * of_truth;
-            }
-            if (!std::isfinite(changes.error)) {
-                ++result.non_finite;
-                continue;
-            }
-            ++result.pixels;
-            sums.error += changes.error;
-            sums.method += changes.method;
-            sums.truth += changes.truth;
-        }
-    }
-    const double count = static_cast<double>(result.pixels) * truth.channels();
-    const auto rms = [count](double sum) {
-        return count > 0 ? std::sqrt(sum / count) : std::numeric_limits<double>::quiet_NaN();
-    };
-    result.rms = rms(sums.error);
-    result.method_warping = rms(sums.method);
-    result.truth_warping = rms(sums.truth);
-    return result;
+    require_motion(truth_now, "the truth");
+    truth_before.plane("position");  // throws where it is missing
+    const FrameErrors before = FrameErrors::of(method_before, truth_before, plane),
+                      now = FrameErrors::of(method_now, truth_now, plane);
+    const BlockGrid grid(now.method.width(), now.method.height(), settings.bootstrap.block_size);
+    return flicker_of(sum_changes(before, now, grid, settings.tolerance), settings.bootstrap);
 }
 
 }  // namespace plumb

@@ -1,45 +1,19 @@
 #include <cmath>
-#include <functional>
 #include <limits>
 
 #include <gmock/gmock.h>
 
 #include "frames/image_error.h"
 #include "metrics/flicker.h"
+#include "tests/metrics/panned_wall.h"
 
 namespace plumb {
 namespace {
 
-constexpr int width = 16, height = 8;
+using namespace test;
+
+constexpr int width = wall_width, height = wall_height;
 constexpr double float32 = 1e-6;  // values of about 1, stored in single precision
-
-// A wall 2 m away that faces the camera; one pixel is 0.01 m wide. Panning moves the camera right, the wall left:
-// surface point s (in pixels of the wall) is seen in pixel s - camera.
-Frame wall(double camera, const std::function<double(double)>& value) {
-    Frame frame(width, height);
-    Image &plane = frame.set("direct", Image(width, height, 1)),
-          &position = frame.set("position", Image(width, height, 3));
-    frame.set("depth", Image(width, height, 1, 2.0f));
-    frame.set("motion", Image(width, height, 2));
-    for (int y = 0; y < height; ++y) {
-        for (int x = 0; x < width; ++x) {
-            plane.at(x, y) = static_cast<float>(value(x + camera));
-            position.at(x, y, 0) = static_cast<float>(0.01 * (x + camera));
-            position.at(x, y, 1) = static_cast<float>(-0.01 * y);
-            position.at(x, y, 2) = -2.0f;
-        }
-    }
-    return frame;
-}
-
-Frame with_motion(Frame frame, double x) {
-    for (int j = 0; j < height; ++j) {
-        for (int i = 0; i < width; ++i) frame.plane("motion").at(i, j, 0) = static_cast<float>(x);
-    }
-    return frame;
-}
-
-double texture(double s) { return 0.5 + 0.03 * s; }
 
 TEST(Flicker, OfAnErrorThatStaysIsZeroAndOfOneThatChangesSignIsTwiceTheError) {
     const Frame truth = wall(0, texture);

@@ -1,0 +1,154 @@
+#include "metrics/path_stability.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "frames/image_error.h"
+#include "frames/parallel.h"
+#include "metrics/shape.h"
+
+namespace plumb {
+namespace {
+
+// A surface point followed back through frames.
+class Track {
+public:
+    Track(const FrameErrors& now, int x, int y, double tolerance) : x_(x), y_(y) {
+        const auto position = now.position.pixel(x, y);
+        position_ = {position[0], position[1], position[2]};
+        const double depth = now.depth.at(x, y);
+        visible_ = std::isfinite(depth) && depth > 0.0;
+        radius_ = tolerance * depth;
+        motion_ = {now.motion.at(x, y, 0), now.motion.at(x, y, 1)};
+    }
+
+    // To the frame before the one it is at; false where the point is not visible there.
+    bool step_back(const FrameErrors& before) {
+        x_ += motion_[0], y_ += motion_[1];
+        // Also false for motion that is no number, before floor() meets it.
+        visible_ = visible_ && x_ > -1.0 && x_ < before.position.width() && y_ > -1.0 && y_ < before.position.height();
+        if (!visible_) return false;
+        place_ = BilinearPlace::at(x_, y_);
+        visible_ = shows_surface(place_, before.position, position_, radius_);
+        if (visible_) motion_ = {place_.look_up(before.motion, 0), place_.look_up(before.motion, 1)};
+        return visible_;
+    }
+
+    const BilinearPlace& place() const { return place_; }
+
+private:
+    double x_, y_, radius_ = 0;
+    std::array<double, 3> position_{};
+    std::array<double, 2> motion_{};
+    BilinearPlace place_{};
+    bool visible_ = false;
+};
+
+// Covariance of the errors against both halves over the frames of a window: the variance of the error.
+class Covariance {
+public:
+    void add(double a, double b) {
+        // Welford's update, which does not lose a small variance below a large mean.
+        ++count_;
+        const double from_old_mean = a - mean_a_;
+        mean_a_ += from_old_mean / count_;
+        mean_b_ += (b - mean_b_) / count_;
+        sum_ += from_old_mean * (b - mean_b_);
+    }
+    double value() const { return sum_ / (count_ - 1); }
+
+private:
+    int count_ = 0;
+    double mean_a_ = 0, mean_b_ = 0, sum_ = 0;
+};
+
+}  // namespace
+
+PathStability::PathStability(std::string plane, const PathStabilitySettings& settings)
+    : plane_(std::move(plane)), settings_(settings) {
+    if (settings.window < 2 || !(settings.noise_limit > 0.0)) {
+        throw ImageError(
+            fmt::format("temporal variance needs a window of at least 2 frames and a noise limit above "
+                        "zero, not {} and {}",
+                        settings.window, settings.noise_limit));
+    }
+}
+
+std::optional<Flicker> PathStability::add(const Frame& method, const Frame& truth, const Image* mask) {
+    require_motion(truth, "the truth");
+    past_.push_back(FrameErrors::of(method, truth, plane_));
+    ++frames_;
+    const FrameErrors& now = past_.back();
+    if (mask) require_mask_fits(*mask, now.method);
+    if (past_.size() < 2) return std::nullopt;
+    const BootstrapSettings& bootstrap = settings_.flicker.bootstrap;
+    const BlockGrid grid(now.method.width(), now.method.height(), bootstrap.block_size);
+    ChangeSums sums = sum_changes(past_[past_.size() - 2], now, grid, settings_.flicker.tolerance, mask);
+    const Flicker of_frame = flicker_of(sums, bootstrap);
+    error_.add(std::move(sums.error));
+    method_.add(std::move(sums.method));
+    truth_.add(std::move(sums.truth));
+    noise_.add(std::move(sums.noise));
+    pixels_ += sums.pixels, not_visible_ += sums.not_visible, non_finite_ += sums.non_finite;
+    if (past_.size() == static_cast<std::size_t>(settings_.window)) {
+        variance_.add(sum_variances(grid, mask));
+        past_.pop_front();
+    }
+    return of_frame;
+}
+
+std::vector<BlockSum> PathStability::sum_variances(const BlockGrid& grid, const Image* mask) const {
+    const FrameErrors& now = past_.back();
+    const int width = now.method.width(), height = now.method.height(), channels = now.method.channels();
+    std::vector<BlockSum> blocks(grid.count());
+    parallel_for(grid.rows(), [&](int row) {
+        std::vector<Covariance> of_channels;
+        const int end = std::min(height, (row + 1) * grid.block_size());
+        for (int y = row * grid.block_size(); y < end; ++y) {
+            for (int x = 0; x < width; ++x) {
+                if (!pixel_counts(mask, x, y)) continue;
+                of_channels.assign(static_cast<std::size_t>(channels), {});
+                for (int c = 0; c < channels; ++c) {
+                    of_channels[static_cast<std::size_t>(c)].add(now.error_a.at(x, y, c), now.error_b.at(x, y, c));
+                }
+                Track track(now, x, y, settings_.flicker.tolerance);
+                const bool throughout = std::all_of(past_.rbegin() + 1, past_.rend(), [&](const FrameErrors& before) {
+                    if (!track.step_back(before)) return false;
+                    for (int c = 0; c < channels; ++c) {
+                        of_channels[static_cast<std::size_t>(c)].add(track.place().look_up(before.error_a, c),
+                                                                     track.place().look_up(before.error_b, c));
+                    }
+                    return true;
+                });
+                if (!throughout) continue;
+                double sum = 0.0;
+                for (const Covariance& covariance : of_channels) sum += covariance.value();
+                if (std::isfinite(sum)) blocks[grid.block_of(x, y)].add(sum, static_cast<std::size_t>(channels));
+            }
+        }
+    });
+    return blocks;
+}
+
+PathStabilityResult PathStability::result() const {
+    const BootstrapSettings& bootstrap = settings_.flicker.bootstrap;
+    PathStabilityResult result;
+    result.frames = frames_;
+    const Estimate squared = error_.mean(bootstrap);
+    result.flicker = squared.root();
+    result.method_warping = method_.mean(bootstrap).root();
+    result.truth_warping = truth_.mean(bootstrap).root();
+    result.temporal_variance = variance_.mean(bootstrap);
+    const double noise = noise_.mean(bootstrap).value;
+    result.noise = std::sqrt(noise);
+    result.trustworthy = noise == 0.0 || (noise <= settings_.noise_limit * squared.value && squared.lower > 0.0);
+    result.pixels = pixels_, result.not_visible = not_visible_, result.non_finite = non_finite_;
+    return result;
+}
+
+}  // namespace plumb
