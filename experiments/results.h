@@ -107,6 +107,21 @@ struct PathPictures {
     std::vector<PathPictureStrip> strips;
 };
 
+// A step from one error to the next; `change_...` bounds the step with 95 %, NaN where that is not known.
+struct WaterfallBar {
+    std::string label;
+    double from = 0.0, to = 0.0;
+    double change_lower = 0.0, change_upper = 0.0;
+    std::string note;  // "saves 12 ms"
+};
+
+// Each bar begins where the one before it ends: what one approximation after the other adds.
+struct Waterfall {
+    std::string title;  // "clutter / shelf / ao: two_layers"
+    std::string axis;   // "RMSE"
+    std::vector<WaterfallBar> bars;
+};
+
 struct CellFailure {
     std::string cell;  // "cornell / front / ao / two_layers"
     std::string message;
@@ -131,6 +146,7 @@ struct RunResults {
     std::vector<ResultRow> rows;
     std::vector<PictureSet> pictures;
     std::vector<PathPictures> path_pictures;
+    std::vector<Waterfall> waterfalls;
     std::vector<ReferenceUse> references;
     std::vector<CellFailure> failures;
     std::map<std::string, std::string> scene_hashes;
