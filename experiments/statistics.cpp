@@ -1,26 +1,12 @@
 #include "experiments/statistics.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
+#include "metrics/student.h"
+
 namespace plumb {
-namespace {
-
-// 97.5 % quantiles of Student's t for 1 to 30 degrees of freedom (any table of it); beyond, Cornish and Fisher's first
-// two terms, which are within 1e-4.
-double student_t(int degrees) {
-    constexpr std::array table = {12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228,
-                                  2.201,  2.179, 2.160, 2.145, 2.131, 2.120, 2.110, 2.101, 2.093, 2.086,
-                                  2.080,  2.074, 2.069, 2.064, 2.060, 2.056, 2.052, 2.048, 2.045, 2.042};
-    if (degrees <= static_cast<int>(table.size())) return table[static_cast<std::size_t>(degrees) - 1];
-    constexpr double z = 1.959964;
-    return z + (z * z * z + z) / (4.0 * degrees) +
-           (5 * std::pow(z, 5) + 16 * z * z * z + 3 * z) / (96.0 * degrees * degrees);
-}
-
-}  // namespace
 
 double quantile(std::vector<double> values, double p) {
     std::ranges::sort(values);

@@ -14,8 +14,8 @@ namespace plumb {
 namespace {
 
 constexpr int fewest_blocks = 64;
-constexpr std::size_t longest_run = 8, fewest_runs = 8;  // frames, runs
-constexpr int fewest_resamples = 40;                     // the 2.5 % tail then holds one
+constexpr std::size_t fewest_runs = 8;
+constexpr int fewest_resamples = 40;  // the 2.5 % tail then holds one
 
 int blocks_along(int pixels, int size) { return (pixels + size - 1) / size; }
 
@@ -58,8 +58,7 @@ std::vector<double> draw_counts(Random& random, std::size_t count) {
     return counts;
 }
 
-std::vector<std::vector<BlockSum>> in_runs(const std::vector<std::vector<BlockSum>>& frames) {
-    std::size_t length = longest_run;
+std::vector<std::vector<BlockSum>> in_runs(const std::vector<std::vector<BlockSum>>& frames, std::size_t length) {
     while (length > 1 && (frames.size() + length - 1) / length < fewest_runs) length /= 2;
     std::vector<std::vector<BlockSum>> runs;
     for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -139,7 +138,7 @@ Estimate BlockSeries::mean(const BootstrapSettings& settings) const {
     if (frames_.empty()) return bootstrap_mean({}, settings);
     if (frames_.size() == 1) return bootstrap_mean(frames_.front(), settings);
     require_resamples(settings.resamples);
-    const auto runs = in_runs(frames_);
+    const auto runs = in_runs(frames_, longest_run_);
     std::vector<BlockSum> all;
     for (const auto& run : runs) all.insert(all.end(), run.begin(), run.end());
     const double value = mean_of(all);

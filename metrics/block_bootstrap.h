@@ -74,14 +74,19 @@ Estimate bootstrap_mean(std::vector<BlockSum> blocks, const BootstrapSettings& s
 // The same over a series, fed frame by frame; it keeps one sum per block and frame.
 class BlockSeries {
 public:
+    // Frames are drawn in runs of so many at most, halved until there are 8 runs. 1: one by one, for members that have
+    // nothing to do with their neighbours, such as other seeds.
+    explicit BlockSeries(std::size_t longest_run = 8) : longest_run_(longest_run) {}
+
     // Every frame has the same number of blocks; throws ImageError else.
     void add(std::vector<BlockSum> frame);
 
     std::size_t frames() const { return frames_.size(); }
-    // Runs are of 8 frames, halved until there are 8 of them. A series of one frame has the interval of an image.
+    // A series of one frame has the interval of an image.
     Estimate mean(const BootstrapSettings& settings = {}) const;
 
 private:
+    std::size_t longest_run_;
     std::vector<std::vector<BlockSum>> frames_;
 };
 

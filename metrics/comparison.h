@@ -69,7 +69,8 @@ struct FrameComparison {
 };
 
 // Compares all planes that both frames have, except those derived from others (half_a., half_b., variance.), and with
-// the reference's half-buffers where it has them; its fact "samples" says how many samples they hold. Throws ImageError
+// the reference's half-buffers where it has them; its fact "samples" says how many samples they hold. Where the test
+// has half-buffers too, the unbiased_* measures take its noise for no error (referenced_error.h). Throws ImageError
 // where sizes differ or no plane is common.
 FrameComparison compare_frames(const Frame& test, const Frame& reference, const ComparisonSettings& settings = {});
 

@@ -15,66 +15,10 @@
 namespace plumb {
 namespace {
 
-// The errors of one value against each half.
-struct Pair {
-    double a = 0, b = 0;
-};
-
-// Sums over all values that count of what error_at(x, y, channel) gives.
-template <typename ErrorAt>
-ReferencedError measure(const Image& like, int reference_samples, const ReferencedErrorSettings& settings,
-                        const ErrorAt& error_at) {
-    if (settings.mask) require_mask_fits(*settings.mask, like);
+void require_settings(const ReferencedErrorSettings& settings) {
     if (!(settings.noise_limit > 0.0)) {
         throw ImageError(fmt::format("the noise limit must be above zero, not {}", settings.noise_limit));
     }
-    const BlockGrid grid(like.width(), like.height(), settings.bootstrap.block_size, settings.mask);
-    ReferencedError result;
-    result.noise_limit = settings.noise_limit;
-    result.reference_samples = reference_samples;
-    result.block_size = grid.block_size();
-
-    std::vector<BlockSum> blocks(grid.count());
-    double plain = 0, noise = 0, product_sum = 0;
-    std::size_t values = 0;
-    for (int y = 0; y < like.height(); ++y) {
-        for (int x = 0; x < like.width(); ++x) {
-            if (!pixel_counts(settings.mask, x, y)) continue;
-            for (int c = 0; c < like.channels(); ++c) {
-                const Pair error = error_at(x, y, c);
-                if (!std::isfinite(error.a) || !std::isfinite(error.b)) {
-                    ++result.left_out;
-                    continue;
-                }
-                const double product = error.a * error.b, mean = 0.5 * (error.a + error.b);
-                blocks[grid.block_of(x, y)].add(product);
-                product_sum += product;
-                plain += mean * mean;
-                noise += 0.25 * (error.a - error.b) * (error.a - error.b);
-                ++values;
-            }
-        }
-    }
-    if (values == 0) {
-        throw ImageError(
-            fmt::format("nothing to compare in {}x{} pixels: {} values are not finite, all others are masked",
-                        like.width(), like.height(), result.left_out));
-    }
-    const auto count = static_cast<double>(values);
-    result.mse = product_sum / count;
-    result.plain_mse = plain / count;
-    result.reference_noise_mse = noise / count;
-    const Estimate interval = bootstrap_mean(std::move(blocks), settings.bootstrap);
-    result.lower = interval.lower, result.upper = interval.upper;
-    if (result.reference_noise_mse == 0.0) {
-        result.ratio = 0.0;
-        result.trustworthy = true;
-    } else {
-        result.ratio =
-            result.mse > 0.0 ? result.reference_noise_mse / result.mse : std::numeric_limits<double>::infinity();
-        result.trustworthy = result.ratio <= settings.noise_limit && result.lower > 0.0;
-    }
-    return result;
 }
 
 }  // namespace
@@ -91,29 +35,77 @@ ReferencedError referenced_error(const Image& test, const Image& half_a, const I
     return paired_referenced_error(test, test, half_a, half_b, reference_samples, settings);
 }
 
-ReferencedError paired_referenced_error(const Image& test_a, const Image& test_b, const Image& half_a,
-                                        const Image& half_b, int reference_samples,
-                                        const ReferencedErrorSettings& settings) {
+ErrorSums sum_errors(const Image& test_a, const Image& test_b, const Image& half_a, const Image& half_b,
+                     const BlockGrid& grid, const Image* mask) {
     require_same_shape(test_a, half_a, "the image and the reference's first half");
     require_same_shape(test_a, half_b, "the image and the reference's second half");
     require_same_shape(test_b, half_b, "the image's second half and the reference's");
-    return measure(test_a, reference_samples, settings, [&](int x, int y, int c) -> Pair {
-        return {double{test_a.at(x, y, c)} - half_a.at(x, y, c), double{test_b.at(x, y, c)} - half_b.at(x, y, c)};
-    });
+    if (mask) require_mask_fits(*mask, test_a);
+    ErrorSums sums;
+    sums.block_size = grid.block_size();
+    sums.products.resize(grid.count());
+    for (int y = 0; y < test_a.height(); ++y) {
+        for (int x = 0; x < test_a.width(); ++x) {
+            if (!pixel_counts(mask, x, y)) continue;
+            for (int c = 0; c < test_a.channels(); ++c) {
+                const double a = double{test_a.at(x, y, c)} - half_a.at(x, y, c),
+                             b = double{test_b.at(x, y, c)} - half_b.at(x, y, c);
+                if (!std::isfinite(a) || !std::isfinite(b)) {
+                    ++sums.left_out;
+                    continue;
+                }
+                sums.products[grid.block_of(x, y)].add(a * b);
+                sums.plain += 0.25 * (a + b) * (a + b);
+                sums.noise += 0.25 * (a - b) * (a - b);
+                ++sums.values;
+            }
+        }
+    }
+    return sums;
+}
+
+ReferencedError referenced_error_of(const ErrorSums& sums, const Estimate& mse, int reference_samples,
+                                    double noise_limit) {
+    if (sums.values == 0) {
+        throw ImageError(
+            fmt::format("nothing to compare: {} values are not finite, all others are masked", sums.left_out));
+    }
+    const auto count = static_cast<double>(sums.values);
+    ReferencedError result;
+    result.mse = mse.value, result.lower = mse.lower, result.upper = mse.upper;
+    result.plain_mse = sums.plain / count;
+    result.reference_noise_mse = sums.noise / count;
+    result.noise_limit = noise_limit;
+    result.reference_samples = reference_samples;
+    result.block_size = sums.block_size;
+    result.left_out = sums.left_out;
+    if (result.reference_noise_mse == 0.0) {
+        result.ratio = 0.0;
+        result.trustworthy = true;
+    } else {
+        result.ratio =
+            result.mse > 0.0 ? result.reference_noise_mse / result.mse : std::numeric_limits<double>::infinity();
+        result.trustworthy = result.ratio <= noise_limit && result.lower > 0.0;
+    }
+    return result;
+}
+
+ReferencedError paired_referenced_error(const Image& test_a, const Image& test_b, const Image& half_a,
+                                        const Image& half_b, int reference_samples,
+                                        const ReferencedErrorSettings& settings) {
+    require_settings(settings);
+    const BlockGrid grid(test_a.width(), test_a.height(), settings.bootstrap.block_size, settings.mask);
+    const ErrorSums sums = sum_errors(test_a, test_b, half_a, half_b, grid, settings.mask);
+    return referenced_error_of(sums, bootstrap_mean(sums.products, settings.bootstrap), reference_samples,
+                               settings.noise_limit);
 }
 
 ReferencedError referenced_error(const Frame& method, const Frame& reference, std::string_view plane,
                                  int reference_samples, const ReferencedErrorSettings& settings) {
-    const std::string name(plane);
-    return referenced_error(method.plane(name), reference.plane("half_a." + name), reference.plane("half_b." + name),
-                            reference_samples, settings);
-}
-
-ReferencedError paired_referenced_error(const Frame& method, const Frame& reference, std::string_view plane,
-                                        int reference_samples, const ReferencedErrorSettings& settings) {
-    const std::string a = fmt::format("half_a.{}", plane), b = fmt::format("half_b.{}", plane);
-    return paired_referenced_error(method.plane(a), method.plane(b), reference.plane(a), reference.plane(b),
-                                   reference_samples, settings);
+    const std::string name(plane), a = fmt::format("half_a.{}", plane), b = fmt::format("half_b.{}", plane);
+    const bool paired = method.has(a) && method.has(b);
+    return paired_referenced_error(method.plane(paired ? a : name), method.plane(paired ? b : name), reference.plane(a),
+                                   reference.plane(b), reference_samples, settings);
 }
 
 }  // namespace plumb

@@ -33,6 +33,7 @@
 #include <cstdint>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include "frames/frame.h"
 #include "metrics/block_bootstrap.h"
@@ -72,11 +73,24 @@ ReferencedError paired_referenced_error(const Image& test_a, const Image& test_b
                                         const Image& half_b, int reference_samples,
                                         const ReferencedErrorSettings& settings = {});
 
-// The same of a plane of two frames; the reference has "half_a." and "half_b." of it.
+// The same of a plane of two frames; the reference has "half_a." and "half_b." of it. Where the method has them too
+// they are paired: its noise is then no error.
 ReferencedError referenced_error(const Frame& method, const Frame& reference, std::string_view plane,
                                  int reference_samples, const ReferencedErrorSettings& settings = {});
-// Both have halves.
-ReferencedError paired_referenced_error(const Frame& method, const Frame& reference, std::string_view plane,
-                                        int reference_samples, const ReferencedErrorSettings& settings = {});
+
+// What a referenced error is made of.
+struct ErrorSums {
+    std::vector<BlockSum> products;  // of the errors against either half, per block
+    double plain = 0, noise = 0;     // sums over all blocks
+    std::size_t values = 0, left_out = 0;
+    int block_size = 0;
+};
+
+// Throws as paired_referenced_error, but not for having nothing to compare.
+ErrorSums sum_errors(const Image& test_a, const Image& test_b, const Image& half_a, const Image& half_b,
+                     const BlockGrid& grid, const Image* mask = nullptr);
+// `mse` is the mean of the products with its interval. Throws ImageError where nothing was compared.
+ReferencedError referenced_error_of(const ErrorSums& sums, const Estimate& mse, int reference_samples,
+                                    double noise_limit);
 
 }  // namespace plumb
