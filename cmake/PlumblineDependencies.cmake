@@ -32,6 +32,10 @@ add_library(plumbline_xxhash INTERFACE)
 target_include_directories(plumbline_xxhash SYSTEM INTERFACE ${XXHASH_INCLUDE_DIR})
 target_link_libraries(plumbline_xxhash INTERFACE ${XXHASH_LIBRARY})
 
+# Draws figures as PNG.
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(RSVG REQUIRED IMPORTED_TARGET librsvg-2.0)
+
 # GLAD 2 generates the OpenGL loader at build time. Debian's package serves Debian's python3, which need not be the
 # first one on the path.
 find_program(PLUMBLINE_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)

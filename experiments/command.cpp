@@ -29,6 +29,7 @@ constexpr const char* examples = R"(Examples:
   plumbline reference cornell --samples 256               the same view, path traced
   plumbline compare a.exr b.exr --fail-above rmse=0.01    two images, and a gate for scripts
   plumbline run experiments/one_vs_two_layers.toml        a whole experiment: table, files, page
+  plumbline reproduce --list                              figures and claims of the literature, made again
   plumbline check experiments/ci.toml                     the same held against limits: a gate for CI
   plumbline COMMAND --help                                the options of one command
 
@@ -99,6 +100,7 @@ int run_command_line(int argc, const char* const* argv) {
     add_reference_command(app, common, action);
     add_compare_command(app, common, action);
     add_run_command(app, common, action);
+    add_reproduce_command(app, common, action);
     add_check_command(app, common, action);
     try {
         app.parse(argc, argv);

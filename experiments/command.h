@@ -28,6 +28,7 @@ void add_reference_command(CLI::App& app, const CommonOptions& common, Action& a
 void add_compare_command(CLI::App& app, const CommonOptions& common, Action& action);
 void add_check_command(CLI::App& app, const CommonOptions& common, Action& action);
 void add_run_command(CLI::App& app, const CommonOptions& common, Action& action);
+void add_reproduce_command(CLI::App& app, const CommonOptions& common, Action& action);
 
 // Parses the command line, runs the subcommand, and turns errors into a message and an exit code.
 int run_command_line(int argc, const char* const* argv);

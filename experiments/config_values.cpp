@@ -18,4 +18,8 @@ void read_resolution(ConfigReader& reader, int& width, int& height) {
     width = size[0], height = size[1];
 }
 
+void allow_presentation(ConfigReader& reader) {
+    for (const char* key : {"figures", "originals", "claims"}) reader.value(key);
+}
+
 }  // namespace plumb

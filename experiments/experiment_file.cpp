@@ -6,8 +6,11 @@
 #include <set>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "experiments/config_values.h"
+#include "experiments/scene_finder.h"
+#include "scenes/scene_error.h"
 
 namespace plumb {
 namespace {
@@ -41,6 +44,7 @@ ExperimentPath read_path(ConfigReader& reader) {
 ExperimentScene read_scene(ConfigReader& reader, const ExperimentScene& defaults) {
     ExperimentScene scene = defaults;
     scene.scene = reader.required_text("scene");
+    scene.optional = reader.boolean("optional", false);
     scene.views = reader.texts("views", {});
     for (ConfigReader& path : reader.tables("paths")) scene.paths.push_back(read_path(path));
     scene.ao_radius = static_cast<float>(reader.number("ao_radius", defaults.ao_radius, 1e-6, infinity));
@@ -175,8 +179,12 @@ Experiment parse_experiment(const ConfigValue& table, const std::filesystem::pat
 
     ConfigReader reference = reader.table("reference");
     experiment.reference.samples = reference.integer("samples", experiment.reference.samples, 2, 1 << 24);
-    if (experiment.reference.samples % 2 != 0) {
-        reference.fail("samples", "must be even, because the reference keeps two halves");
+    experiment.reference.path_samples =
+        reference.integer("path_samples", std::min(experiment.reference.samples, experiment.reference.path_samples), 2,
+                          1 << 24);
+    for (const auto& [key, samples] : {std::pair{"samples", experiment.reference.samples},
+                                       std::pair{"path_samples", experiment.reference.path_samples}}) {
+        if (samples % 2 != 0) reference.fail(key, "must be even, because the reference keeps two halves");
     }
     experiment.reference.target_error = reference.number("target_error", experiment.reference.target_error, 0.0, 1.0);
     experiment.reference.seed = static_cast<std::uint64_t>(
@@ -222,10 +230,30 @@ Experiment parse_experiment(const ConfigValue& table, const std::filesystem::pat
 
 Experiment load_experiment(const std::filesystem::path& file) { return parse_experiment(read_config(file), file); }
 
+std::vector<std::string> leave_out_absent_scenes(Experiment& experiment, const SceneFinder& finder) {
+    std::vector<std::string> left_out;
+    std::erase_if(experiment.scenes, [&](const ExperimentScene& scene) {
+        if (!scene.optional) return false;
+        try {
+            finder.load(scene.scene);
+            return false;
+        } catch (const SceneError& error) {
+            left_out.push_back(fmt::format("{}: {}", scene.scene, error.what()));
+            return true;
+        }
+    });
+    if (experiment.scenes.empty()) {
+        throw SceneError(fmt::format("{}: all of its scenes are optional, and none is here: {}",
+                                     experiment.file.string(), fmt::join(left_out, "; ")));
+    }
+    return left_out;
+}
+
 void make_quick(Experiment& experiment) {
     experiment.width = std::max(8, experiment.width / 4);
     experiment.height = std::max(8, experiment.height / 4);
     experiment.reference.samples = std::min(experiment.reference.samples, 64);
+    experiment.reference.path_samples = std::min(experiment.reference.path_samples, 16);
     experiment.reference.target_error = 0.0;
     experiment.timing.repetitions = std::min(experiment.timing.repetitions, 3);
     std::erase_if(experiment.path_tracer_samples, [](int samples) { return samples > 4; });

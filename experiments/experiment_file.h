@@ -14,6 +14,8 @@
 
 namespace plumb {
 
+class SceneFinder;
+
 // A walk along one of a scene's camera paths, frame by frame; instances that move are where they are at that time.
 struct ExperimentPath {
     std::string path;
@@ -24,6 +26,7 @@ struct ExperimentPath {
 
 struct ExperimentScene {
     std::string scene;               // a built-in scene's name or a scene file
+    bool optional = false;           // left out, with a word, where its files are not there
     std::vector<std::string> views;  // camera names; empty: all
     std::vector<ExperimentPath> paths;
     float ao_radius = 1.0f;           // metres
@@ -34,6 +37,7 @@ struct ExperimentScene {
 
 struct ExperimentReference {
     int samples = 256;          // per pixel, the most
+    int path_samples = 64;      // per pixel of each frame of a path; the target error counts for both
     double target_error = 0.0;  // stop early below this relative error; 0: never
     std::uint64_t seed = 1;
     // A difference counts as measured only where the mean squared noise of the reference is below this share of it.
@@ -95,6 +99,10 @@ MethodSelection read_methods(ConfigReader& reader);
 // Throws ConfigError with file and line.
 Experiment parse_experiment(const ConfigValue& table, const std::filesystem::path& file);
 Experiment load_experiment(const std::filesystem::path& file);
+
+// Takes those optional scenes out that cannot be loaded, and returns one line for each: its name and the reason. Throws
+// SceneError where none would be left.
+std::vector<std::string> leave_out_absent_scenes(Experiment& experiment, const SceneFinder& finder);
 
 // The same question at a small size, for trying it out: a quarter of the resolution, few samples, one view per scene.
 void make_quick(Experiment& experiment);

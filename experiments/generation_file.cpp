@@ -31,6 +31,7 @@ GenerationExperiment parse_generation(const ConfigValue& table, const std::files
         experiment.walks.push_back(walk);
     }
     if (experiment.walks.empty()) reader.fail("", "'walks' is missing: write at least one [[walks]] table");
+    allow_presentation(reader);
     experiment.methods = read_methods(reader).methods;
     for (const Method& method : experiment.methods) {
         if (method.gbuffer.layers != 2 || method.gbuffer.source == SourceOfStage::truth ||

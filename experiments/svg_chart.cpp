@@ -1,6 +1,7 @@
 #include "experiments/svg_chart.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -15,24 +16,38 @@ namespace {
 constexpr double panel_width = 330.0, panel_height = 270.0;
 constexpr double left = 64.0, right = 14.0, top = 30.0, bottom = 46.0;
 constexpr double head = 40.0, foot = 28.0;
+constexpr double legend_line = 15.0, letter_width = 6.3, title_letter_width = 10.0;
+constexpr double slant_height = 46.0;  // more for names of categories that stand aslant
 constexpr const char *ink = "#222222", *faint = "#dddddd";
 
-bool drawable(const ChartPoint& point) {
-    return point.x > 0.0 && point.y > 0.0 && std::isfinite(point.x) && std::isfinite(point.y);
-}
-
 struct Axis {
-    double least = std::numeric_limits<double>::infinity(), greatest = 0.0;  // values
-    double from = 0.0, to = 1.0;                                             // pixels
+    bool logarithmic = true;
+    double least = std::numeric_limits<double>::infinity(), greatest = -least;  // values
+    double from = 0.0, to = 1.0;                                                // pixels
 
-    void include(double value) { least = std::min(least, value), greatest = std::max(greatest, value); }
+    bool can_show(double value) const { return std::isfinite(value) && (!logarithmic || value > 0.0); }
+    void include(double value) {
+        if (can_show(value)) least = std::min(least, value), greatest = std::max(greatest, value);
+    }
     void widen() {
-        if (!(least < std::numeric_limits<double>::infinity())) least = 1.0, greatest = 10.0;
-        const double margin = std::max(1.05, std::pow(greatest / least, 0.04));
-        least /= margin, greatest *= margin;
+        if (!(least <= greatest)) least = 1.0, greatest = 10.0;
+        if (logarithmic) {
+            const double margin = std::max(1.05, std::pow(greatest / least, 0.04));
+            least /= margin, greatest *= margin;
+        } else {
+            const double margin = greatest > least ? 0.05 * (greatest - least) : std::max(0.5, 0.1 * std::abs(least));
+            // An axis that begins at nothing stays there.
+            if (least != 0.0) least -= margin;
+            if (greatest != 0.0) greatest += margin;
+        }
     }
     double place(double value) const {
-        return std::lerp(from, to, std::log(value / least) / std::log(greatest / least));
+        const double share =
+            logarithmic ? std::log(value / least) / std::log(greatest / least) : (value - least) / (greatest - least);
+        return std::lerp(from, to, share);
+    }
+    std::vector<double> ticks() const {
+        return logarithmic ? logarithmic_ticks(least, greatest) : linear_ticks(least, greatest);
     }
 };
 
@@ -48,19 +63,25 @@ std::string line(double x1, double y1, double x2, double y2, const std::string& 
                        y2, colour, attributes.empty() ? "" : " " + attributes);
 }
 
+std::string rectangle(double x, double y, double width, double height, const std::string& fill) {
+    return fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"{}\"/>\n", x, y,
+                       width, height, fill);
+}
+
 std::string marker(ChartSeries::Marker kind, double x, double y, const std::string& colour) {
     switch (kind) {
         case ChartSeries::Marker::square:
-            return fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"6\" height=\"6\" fill=\"{}\"/>\n", x - 3, y - 3,
-                               colour);
+            return rectangle(x - 3, y - 3, 6, 6, colour);
         case ChartSeries::Marker::triangle:
             return fmt::format("<path d=\"M{:.1f} {:.1f} l4 7 h-8 z\" fill=\"{}\"/>\n", x, y - 4, colour);
-        default:
-            return fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3.2\" fill=\"{}\"/>\n", x, y, colour);
+        case ChartSeries::Marker::circle:
+            break;
     }
+    return fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3.2\" fill=\"{}\"/>\n", x, y, colour);
 }
 
-bool has_line(const ChartSeries& series) { return series.style != ChartSeries::Style::markers; }
+bool is_bars(const ChartSeries& series) { return series.style == ChartSeries::Style::bars; }
+bool has_line(const ChartSeries& series) { return series.style != ChartSeries::Style::markers && !is_bars(series); }
 bool has_markers(const ChartSeries& series) {
     return series.style == ChartSeries::Style::markers || series.style == ChartSeries::Style::markers_and_line;
 }
@@ -68,78 +89,198 @@ std::string dashes(const ChartSeries& series) {
     return series.style == ChartSeries::Style::dashed_line ? "stroke-dasharray=\"4 3\"" : "";
 }
 
-std::string draw_axes(const Chart& chart, const Axis& x, const Axis& y) {
-    std::string svg;
-    for (const double tick : logarithmic_ticks(x.least, x.greatest)) {
-        svg += line(x.place(tick), y.from, x.place(tick), y.to, faint);
-        svg += text(x.place(tick), y.from + 14.0, "middle", fmt::format("{:g}", tick));
-    }
-    for (const double tick : logarithmic_ticks(y.least, y.greatest)) {
-        svg += line(x.from, y.place(tick), x.to, y.place(tick), faint);
-        svg += text(x.from - 5.0, y.place(tick) + 4.0, "end", fmt::format("{:g}", tick));
-    }
-    svg += fmt::format(
-        "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"none\" stroke=\"{}\"/>\n", x.from,
-        y.to, x.to - x.from, y.from - y.to, ink);
-    const double middle_x = 0.5 * (x.from + x.to), middle_y = 0.5 * (y.from + y.to);
-    svg += text(middle_x, y.to - 9.0, "middle", chart.title, "font-weight=\"bold\"");
-    svg += text(middle_x, y.from + 32.0, "middle", chart.x_label);
-    svg += text(x.from - 51.0, middle_y, "middle", chart.y_label,
-                fmt::format("transform=\"rotate(-90 {:.1f} {:.1f})\"", x.from - 51.0, middle_y));
-    return svg;
+// Names of categories that would run into each other.
+bool has_slanted_categories(const Chart& chart) {
+    const double room = (panel_width - left - right) / std::max(1.0, static_cast<double>(chart.categories.size()));
+    return std::ranges::any_of(chart.categories, [&](const std::string& name) {
+        return static_cast<double>(name.size()) * letter_width > room;
+    });
 }
 
-std::string draw_series(const ChartSeries& series, const Axis& x, const Axis& y) {
-    std::string svg, path, bars, markers;
-    for (const ChartPoint& point : series.points) {
-        if (!drawable(point)) continue;
-        const double at_x = x.place(point.x), at_y = y.place(point.y);
-        path += fmt::format("{}{:.1f} {:.1f} ", path.empty() ? "M" : "L", at_x, at_y);
-        if (point.lower > 0.0 && point.upper > point.lower)
-            bars += line(at_x, y.place(point.lower), at_x, y.place(point.upper), series.colour);
-        if (has_markers(series)) markers += marker(series.marker, at_x, at_y, series.colour);
-    }
-    if (has_line(series) && !path.empty()) {
-        path.pop_back();
-        svg += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.3\" {}/>\n", path,
-                           series.colour, dashes(series));
-    }
-    return svg + bars + markers;
-}
-
-// In the upper right corner: curves of errors fall.
-std::string draw_legend(const Chart& chart, const Axis& x, const Axis& y) {
-    std::string svg;
-    double at_y = y.to + 16.0;
-    for (const ChartSeries& series : chart.series) {
-        if (series.name.empty()) continue;
-        if (has_line(series))
-            svg += line(x.to - 26.0, at_y - 4.0, x.to - 8.0, at_y - 4.0, series.colour, dashes(series));
-        if (has_markers(series)) svg += marker(series.marker, x.to - 17.0, at_y - 4.0, series.colour);
-        svg += text(x.to - 31.0, at_y, "end", series.name);
-        at_y += 15.0;
-    }
-    return svg;
-}
-
-std::string draw_chart(const Chart& chart, double origin_x, double origin_y) {
-    Axis x, y;
-    for (const ChartSeries& series : chart.series) {
-        for (const ChartPoint& point : series.points) {
-            if (!drawable(point)) continue;
-            x.include(point.x), y.include(point.y);
-            if (point.lower > 0.0 && point.upper > point.lower) y.include(point.lower), y.include(point.upper);
+// One panel being drawn: the chart, its axes, and how much room its bars have.
+class Panel {
+public:
+    Panel(const Chart& chart, double origin_x, double origin_y) : chart_(chart) {
+        x_.logarithmic = chart.categories.empty() && chart.x_scale == ChartScale::logarithmic;
+        y_.logarithmic = chart.y_scale == ChartScale::logarithmic;
+        for (const ChartSeries& series : chart.series) {
+            for (const ChartPoint& point : series.points) include(series, point);
         }
+        if (chart.categories.empty()) {
+            x_.widen();
+        } else {
+            x_.least = -0.5, x_.greatest = static_cast<double>(chart.categories.size()) - 0.5;
+        }
+        y_.widen();
+        x_.from = origin_x + left, x_.to = origin_x + panel_width - right;
+        y_.from = origin_y + panel_height - bottom, y_.to = origin_y + top;
     }
-    x.widen(), y.widen();
-    x.from = origin_x + left, x.to = origin_x + panel_width - right;
-    y.from = origin_y + panel_height - bottom, y.to = origin_y + top;
-    std::string svg = "<g>\n" + draw_axes(chart, x, y);
-    for (const ChartSeries& series : chart.series) svg += draw_series(series, x, y);
-    return svg + draw_legend(chart, x, y) + "</g>\n";
-}
+
+    std::string draw() const {
+        std::string svg = "<g>\n" + draw_axes();
+        const auto bars = std::ranges::count_if(chart_.series, is_bars);
+        int bar = 0;
+        for (const ChartSeries& series : chart_.series) {
+            svg += is_bars(series) ? draw_bars(series, bar, static_cast<int>(bars)) : draw_points(series);
+            bar += is_bars(series) ? 1 : 0;
+        }
+        return svg + draw_legend() + "</g>\n";
+    }
+
+private:
+    bool can_show(const ChartPoint& point) const { return x_.can_show(point.x) && y_.can_show(point.y); }
+    bool has_error_bar(const ChartPoint& point) const {
+        return point.upper > point.lower && y_.can_show(point.lower) && y_.can_show(point.upper);
+    }
+
+    void include(const ChartSeries& series, const ChartPoint& point) {
+        if (!can_show(point)) return;
+        x_.include(point.x), y_.include(point.y);
+        if (is_bars(series)) y_.include(point.base);
+        if (has_error_bar(point)) y_.include(point.lower), y_.include(point.upper);
+    }
+
+    std::string draw_axes() const {
+        std::string svg;
+        if (chart_.categories.empty()) {
+            for (const double tick : x_.ticks()) {
+                svg += line(x_.place(tick), y_.from, x_.place(tick), y_.to, faint);
+                svg += text(x_.place(tick), y_.from + 14.0, "middle", fmt::format("{:g}", tick));
+            }
+        } else {
+            svg += draw_categories();
+        }
+        for (const double tick : y_.ticks()) {
+            svg += line(x_.from, y_.place(tick), x_.to, y_.place(tick), faint);
+            svg += text(x_.from - 5.0, y_.place(tick) + 4.0, "end", fmt::format("{:g}", tick));
+        }
+        svg += fmt::format(
+            "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"none\" stroke=\"{}\"/>\n",
+            x_.from, y_.to, x_.to - x_.from, y_.from - y_.to, ink);
+        const double middle_x = 0.5 * (x_.from + x_.to), middle_y = 0.5 * (y_.from + y_.to);
+        svg += text(middle_x, y_.to - 9.0, "middle", chart_.title, "font-weight=\"bold\"");
+        if (!chart_.x_label.empty()) svg += text(middle_x, y_.from + 32.0, "middle", chart_.x_label);
+        svg += text(x_.from - 51.0, middle_y, "middle", chart_.y_label,
+                    fmt::format("transform=\"rotate(-90 {:.1f} {:.1f})\"", x_.from - 51.0, middle_y));
+        return svg;
+    }
+
+    std::string draw_categories() const {
+        const bool aslant = has_slanted_categories(chart_);
+        std::string svg;
+        for (std::size_t i = 0; i < chart_.categories.size(); ++i) {
+            const double x = x_.place(static_cast<double>(i)), y = y_.from + (aslant ? 11.0 : 14.0);
+            svg += aslant ? text(x + 4.0, y, "end", chart_.categories[i],
+                                 fmt::format("transform=\"rotate(-25 {:.1f} {:.1f})\"", x + 4.0, y))
+                          : text(x, y, "middle", chart_.categories[i]);
+        }
+        return svg;
+    }
+
+    std::string draw_points(const ChartSeries& series) const {
+        std::string svg, path, bars, markers;
+        for (std::size_t i = 0; i < series.points.size(); ++i) {
+            const ChartPoint& point = series.points[i];
+            if (!can_show(point)) continue;
+            const double at_x = x_.place(point.x), at_y = y_.place(point.y);
+            path += fmt::format("{}{:.1f} {:.1f} ", path.empty() ? "M" : "L", at_x, at_y);
+            if (has_error_bar(point))
+                bars += line(at_x, y_.place(point.lower), at_x, y_.place(point.upper), series.colour);
+            if (has_markers(series)) markers += marker(series.marker, at_x, at_y, series.colour);
+            if (i < series.labels.size()) markers += draw_label(series.labels[i], at_x, at_y);
+        }
+        if (has_line(series) && !path.empty()) {
+            path.pop_back();
+            svg += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.3\" {}/>\n", path,
+                               series.colour, dashes(series));
+        }
+        return svg + bars + markers;
+    }
+
+    // Towards the middle, so that it stays within the frame.
+    std::string draw_label(const std::string& label, double x, double y) const {
+        const bool to_the_left = x > 0.5 * (x_.from + x_.to);
+        return text(x + (to_the_left ? -6.0 : 6.0), y - 4.0, to_the_left ? "end" : "start", label, "font-size=\"9\"");
+    }
+
+    std::string draw_bars(const ChartSeries& series, int index, int count) const {
+        const double room = (x_.to - x_.from) / static_cast<double>(std::max<std::size_t>(1, chart_.categories.size()));
+        const int places = chart_.is_waterfall ? 1 : count;
+        const double width = 0.8 * room / places;
+        std::string svg;
+        for (const ChartPoint& point : series.points) {
+            if (!can_show(point)) continue;
+            const double offset = chart_.is_waterfall ? 0.0 : (index - 0.5 * (places - 1)) * width;
+            const double middle = x_.place(point.x) + offset;
+            const double base = y_.can_show(point.base) ? y_.place(point.base) : y_.from, end = y_.place(point.y);
+            svg += rectangle(middle - 0.46 * width, std::min(base, end), 0.92 * width, std::abs(base - end),
+                             series.colour);
+            if (has_error_bar(point)) svg += line(middle, y_.place(point.lower), middle, y_.place(point.upper), ink);
+            // To the next bar, which begins where this one ends.
+            if (chart_.is_waterfall && middle + room < x_.to)
+                svg += line(middle + 0.4 * room, end, middle + 0.6 * room, end, ink, "stroke-width=\"0.7\"");
+        }
+        return svg;
+    }
+
+    struct Corner {
+        bool at_left, at_bottom;
+    };
+
+    // Of the four, the one whose area the fewest points and bars lie in; the upper right one where it is as good.
+    Corner legend_corner(double width, double height) const {
+        constexpr std::array<Corner, 4> corners = {Corner{false, false}, {true, false}, {false, true}, {true, true}};
+        const auto covered = [&](const Corner& corner) {
+            int count = 0;
+            for (const ChartSeries& series : chart_.series) {
+                for (const ChartPoint& point : series.points) {
+                    if (!can_show(point)) continue;
+                    const double x = x_.place(point.x), y = y_.place(point.y);
+                    const bool beside = corner.at_left ? x > x_.from + width : x < x_.to - width;
+                    // A bar covers all from its end to its foot.
+                    const bool apart = corner.at_bottom ? y < y_.from - height && !is_bars(series) : y > y_.to + height;
+                    count += beside || apart ? 0 : 1;
+                }
+            }
+            return count;
+        };
+        return *std::ranges::min_element(corners, {}, covered);
+    }
+
+    std::string draw_legend() const {
+        std::size_t longest = 0;
+        int lines = 0;
+        for (const ChartSeries& series : chart_.series) {
+            longest = std::max(longest, series.name.size());
+            lines += series.name.empty() ? 0 : 1;
+        }
+        const Corner corner =
+            legend_corner(31.0 + static_cast<double>(longest) * letter_width, 8.0 + lines * legend_line);
+        const double side = corner.at_left ? 1.0 : -1.0, edge = corner.at_left ? x_.from : x_.to;
+        double y = corner.at_bottom ? y_.from - 8.0 - (lines - 1) * legend_line : y_.to + 16.0;
+        std::string svg;
+        for (const ChartSeries& series : chart_.series) {
+            if (series.name.empty()) continue;
+            if (has_line(series))
+                svg += line(edge + side * 26.0, y - 4.0, edge + side * 8.0, y - 4.0, series.colour, dashes(series));
+            if (has_markers(series)) svg += marker(series.marker, edge + side * 17.0, y - 4.0, series.colour);
+            if (is_bars(series)) svg += rectangle(edge + side * 17.0 - 5.0, y - 9.0, 10.0, 10.0, series.colour);
+            svg += text(edge + side * 31.0, y, corner.at_left ? "start" : "end", series.name);
+            y += legend_line;
+        }
+        return svg;
+    }
+
+    const Chart& chart_;
+    Axis x_, y_;
+};
 
 }  // namespace
+
+std::string chart_colour(std::size_t index) {
+    constexpr std::array colours = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000"};
+    return colours[index % colours.size()];
+}
 
 std::vector<double> logarithmic_ticks(double least, double greatest) {
     const double decades = std::log10(greatest / least);
@@ -154,10 +295,28 @@ std::vector<double> logarithmic_ticks(double least, double greatest) {
     return ticks;
 }
 
+std::vector<double> linear_ticks(double least, double greatest) {
+    constexpr double most_steps = 6.0;
+    const double rough = (greatest - least) / most_steps, power = std::pow(10.0, std::floor(std::log10(rough)));
+    double step = 10.0 * power;
+    for (const double candidate : {5.0 * power, 2.0 * power, power}) {
+        if (candidate >= rough) step = candidate;
+    }
+    std::vector<double> ticks;
+    // Whole numbers of steps, so that nothing adds up and zero is zero.
+    for (double i = std::ceil(least / step - 1e-9); i * step <= greatest + 1e-9 * step; i += 1.0)
+        ticks.push_back(i * step + 0.0);
+    return ticks;
+}
+
 std::string print_svg(const std::vector<Chart>& charts, int columns, const std::string& title,
                       const std::string& note) {
     const int rows = (static_cast<int>(charts.size()) + columns - 1) / columns;
-    const double width = columns * panel_width, height = head + rows * panel_height + (note.empty() ? 8.0 : foot);
+    const double row_height = panel_height + (std::ranges::any_of(charts, has_slanted_categories) ? slant_height : 0.0);
+    const double panels_width = columns * panel_width;
+    const double width = std::max({panels_width, 20.0 + static_cast<double>(title.size()) * title_letter_width,
+                                   20.0 + static_cast<double>(note.size()) * letter_width});
+    const double height = head + rows * row_height + (note.empty() ? 8.0 : foot);
     std::string svg = fmt::format(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" viewBox=\"0 0 {0:.0f} "
         "{1:.0f}\" font-family=\"DejaVu Sans, Helvetica, sans-serif\" font-size=\"11\" fill=\"{2}\" role=\"img\">\n"
@@ -166,7 +325,7 @@ std::string print_svg(const std::vector<Chart>& charts, int columns, const std::
     svg += text(0.5 * width, 25.0, "middle", title, "font-size=\"16\" font-weight=\"bold\"");
     for (std::size_t i = 0; i < charts.size(); ++i) {
         const int column = static_cast<int>(i) % columns, row = static_cast<int>(i) / columns;
-        svg += draw_chart(charts[i], column * panel_width, head + row * panel_height);
+        svg += Panel(charts[i], 0.5 * (width - panels_width) + column * panel_width, head + row * row_height).draw();
     }
     if (!note.empty()) svg += text(0.5 * width, height - 10.0, "middle", note);
     return svg + "</svg>\n";

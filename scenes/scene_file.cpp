@@ -24,10 +24,27 @@
 namespace plumb {
 namespace {
 
-constexpr std::array wrapper_names = {
-    "bathroom",       "bathroom-glossy",  "bunny",          "clutter-moving", "conference",          "cornell-glossy",
-    "cornell-mirror", "cornell-original", "cornell-sphere", "crytek-sponza",  "crytek-sponza-lamps", "dabrovic-sponza",
-    "dragon",         "dragon-full",      "flight-helmet",  "nvpro-cornell",  "veach-ajar"};
+constexpr std::array wrapper_names = {"bathroom",
+                                      "bathroom-glossy",
+                                      "bunny",
+                                      "clutter-lamps",
+                                      "clutter-moving",
+                                      "clutter-polished",
+                                      "colonnade-lamps",
+                                      "colonnade-polished",
+                                      "conference",
+                                      "cornell-glossy",
+                                      "cornell-mirror",
+                                      "cornell-original",
+                                      "cornell-sphere",
+                                      "crytek-sponza",
+                                      "crytek-sponza-lamps",
+                                      "dabrovic-sponza",
+                                      "dragon",
+                                      "dragon-full",
+                                      "flight-helmet",
+                                      "nvpro-cornell",
+                                      "veach-ajar"};
 
 using Folders = std::vector<std::filesystem::path>;
 

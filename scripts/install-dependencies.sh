@@ -12,7 +12,7 @@ packages=(
     # files
     libopenimageio-dev openimageio-tools libopenexr-dev libassimp-dev libtomlplusplus-dev nlohmann-json3-dev
     # program
-    libcli11-dev libfmt-dev libxxhash-dev zlib1g-dev libjs-chart.js
+    libcli11-dev libfmt-dev libxxhash-dev zlib1g-dev libjs-chart.js librsvg2-dev fonts-dejavu-core
     # tests and benchmarks
     libgtest-dev libgmock-dev libbenchmark-dev
 )

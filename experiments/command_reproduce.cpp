@@ -1,0 +1,158 @@
+// `plumbline reproduce`: the figures, tables and claims of the seeds, made again.
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "experiments/backend_option.h"
+#include "experiments/cache_option.h"
+#include "experiments/claims_report.h"
+#include "experiments/command.h"
+#include "experiments/exit_code.h"
+#include "experiments/interruption.h"
+#include "experiments/reproduction.h"
+#include "experiments/terminal_table.h"
+#include "experiments/view_options.h"
+#include "frames/atomic_file.h"
+
+namespace plumb {
+namespace {
+
+constexpr const char* examples = R"(Examples:
+  plumbline reproduce --list                          what there is, and where in the seeds it stands
+  plumbline reproduce thesis-gbuffer-time             one of them: figures, the original's numbers, claims
+  plumbline reproduce --all --scenes-dir ~/scenes     all of them, and the table of claims
+  plumbline reproduce thesis-ssao-samples --present   its files again, from the numbers of the last run
+  plumbline reproduce --claims out/reproduce          the table of claims again, from finished runs
+Each writes OUTPUT/NAME/: README.md, figures as SVG, PNG and CSV, numbers.csv, claims.json, and the run's own page in
+run/. Exits with 1 where cells failed; claims that fail are a finding, not a failure.)";
+
+struct Options {
+    std::vector<std::string> names;
+    RunOptions run;
+    std::filesystem::path output = "out/reproduce", claims_folder, report;
+    bool all = false, list = false, quick = false, present = false, frames = false;
+};
+
+int print_list() {
+    TerminalTable table({{"name"}, {"what"}, {"stands in"}});
+    for (const std::string& name : reproduction_names()) {
+        const Reproduction reproduction = load_reproduction(name);
+        table.add_row({name, reproduction.title, reproduction.sources()});
+    }
+    fmt::print("{}", table.print());
+    return exit_fine;
+}
+
+// All records that lie in `folder`/*/claims.json, in the order of the experiments; those of the user's own files last.
+std::vector<ClaimRecord> gather_claims(const std::filesystem::path& folder) {
+    std::vector<std::filesystem::path> files;
+    std::error_code error;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+        if (std::filesystem::is_regular_file(entry.path() / "claims.json")) files.push_back(entry.path());
+    }
+    if (files.empty()) {
+        throw ConfigError(
+            fmt::format("'{}' holds no finished reproduction (no NAME/claims.json); run 'plumbline "
+                        "reproduce --all' first",
+                        folder.string()));
+    }
+    const std::vector<std::string> order = reproduction_names();
+    const auto place_of = [&](const std::filesystem::path& file) {
+        return std::pair(std::ranges::find(order, file.filename().string()) - order.begin(), file);
+    };
+    std::ranges::sort(files, {}, place_of);
+    std::vector<ClaimRecord> records;
+    for (const std::filesystem::path& file : files) {
+        const std::vector<ClaimRecord> more = read_claims_json(file / "claims.json");
+        records.insert(records.end(), more.begin(), more.end());
+    }
+    return records;
+}
+
+void write_claims(const std::filesystem::path& folder, const std::filesystem::path& report) {
+    const std::filesystem::path file = report.empty() ? folder / "CLAIMS.md" : report;
+    const std::vector<ClaimRecord> records = gather_claims(folder);
+    write_text_atomically(file, print_claims_markdown(records, "plumbline reproduce --all"));
+    fmt::print("\n{} claims: {}\n", records.size(), file.string());
+}
+
+// Exit code of one reproduction.
+int reproduce(const Options& options, const CommonOptions& common, const std::string& name) {
+    const Reproduction reproduction = load_reproduction(name);
+    const std::filesystem::path folder = options.output / reproduction.name;
+    require_writable_folder(folder);
+    fmt::print("\n{}: {}\n{}\n", reproduction.name, reproduction.title, reproduction.question);
+    Measurements measurements;
+    if (options.present) {
+        measurements = read_measurements_json(folder / "measurements.json");
+    } else {
+        RunOptions run = options.run;
+        run.output = folder / "run";
+        run.write_frames = options.frames;
+        run.stop = &interruption_flag();
+        run.command = fmt::format("plumbline reproduce {}{}", name, options.quick ? " --quick" : "");
+        measurements = run_reproduction(reproduction, SceneFinder(common.scenes_dirs), run, options.quick);
+        if (measurements.interrupted) {
+            fmt::print(
+                "\nInterrupted: no figures were made; the same command finds the references that were finished.\n");
+            return exit_interrupted;
+        }
+    }
+    const PresentedReproduction presented = present(reproduction, measurements, folder);
+    fmt::print("{}\n{:.0f} s, {} on {}\n{}\n", presented.text, measurements.seconds, measurements.renderer,
+               measurements.cpu, (folder / "README.md").string());
+    return measurements.failures.empty() ? exit_fine : exit_failed;
+}
+
+int run(const Options& options, const CommonOptions& common) {
+    if (options.list) return print_list();
+    if (!options.claims_folder.empty()) {
+        write_claims(options.claims_folder, options.report);
+        return exit_fine;
+    }
+    const std::vector<std::string> names = options.all ? reproduction_names() : options.names;
+    if (names.empty()) throw ConfigError("name what to reproduce, or ask for --all or --list");
+    for (const std::string& name : names) load_reproduction(name);  // a misspelt last one is told before the first runs
+    int code = exit_fine;
+    for (const std::string& name : names) {
+        const int one = reproduce(options, common, name);
+        if (one == exit_interrupted) return one;
+        code = std::max(code, one);
+    }
+    if (options.all || !options.report.empty()) write_claims(options.output, options.report);
+    return code;
+}
+
+}  // namespace
+
+void add_reproduce_command(CLI::App& app, const CommonOptions& common, Action& action) {
+    CLI::App* command =
+        app.add_subcommand("reproduce", "Make the seeds' figures and tables again, and test what they claim")
+            ->group("Measure");
+    auto options = std::make_shared<Options>();
+    command->add_option("names", options->names, "What to reproduce: names (--list), or experiment files with claims")
+        ->type_name("NAME");
+    command->add_flag("--all", options->all, "Everything there is, then the table of claims");
+    command->add_flag("--list", options->list, "What there is, and where in the seeds it stands");
+    command->add_option("-o,--output", options->output, "Folder of all results")->capture_default_str();
+    command->add_flag("--quick", options->quick,
+                      "Try it: a quarter of the resolution, one view per scene, few samples; proves nothing");
+    command->add_flag("--present", options->present, "Render nothing: figures and claims from the last run's numbers");
+    command->add_option("--claims", options->claims_folder, "Only gather FOLDER/*/claims.json into a table of claims")
+        ->type_name("FOLDER");
+    command->add_option("--report", options->report, "Where that table goes; CLAIMS.md in the folder by default")
+        ->type_name("FILE");
+    command->add_flag("--frames", options->frames, "Also write the frames as EXR files");
+    add_cache_option(*command, options->run.cache_dir);
+    command->add_option("--threads", options->run.threads, "Threads of the path tracer; 0: all")
+        ->check(CLI::NonNegativeNumber);
+    add_backend_option(*command, options->run.backend);
+    command->footer(examples);
+    command->callback([options, &common, &action] { action = [options, &common] { return run(*options, common); }; });
+}
+
+}  // namespace plumb

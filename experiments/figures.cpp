@@ -1,0 +1,211 @@
+#include "experiments/figures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "experiments/claims.h"
+#include "experiments/svg_chart.h"
+
+namespace plumb {
+namespace {
+
+// The values of an attribute among the cells that a figure looks at, in their order; one empty text without attribute.
+std::vector<std::string> values_of(const std::string& attribute, const Figure& figure, const std::vector<Cell>& cells) {
+    std::vector<std::string> values;
+    for (const Cell& cell : cells) {
+        if (!figure.where.matches(cell) || std::isnan(measure_of(cell, figure.y))) continue;
+        const std::string value = attribute.empty() ? "" : attribute_of(cell, attribute);
+        if (!attribute.empty() && value.empty()) continue;
+        if (std::ranges::find(values, value) == values.end()) values.push_back(value);
+    }
+    return values;
+}
+
+struct FigurePoint {
+    std::string panel, series, category;
+    double x = 0.0, y = 0.0, lower = 0.0, upper = 0.0;
+    int count = 0;
+};
+
+MeanSummary average(const std::vector<MeasuredCase>& cases, bool geometric) {
+    std::vector<double> values;
+    for (const MeasuredCase& entry : cases) {
+        if (!geometric || entry.value > 0.0) values.push_back(entry.value);
+    }
+    if (!geometric) return summarise_mean(values);
+    const RatioSummary ratios = summarise_ratios(values);
+    MeanSummary mean;
+    mean.mean = ratios.mean, mean.lower = ratios.lower, mean.upper = ratios.upper, mean.count = ratios.count;
+    return mean;
+}
+
+// The point of the cells that have these values.
+std::optional<FigurePoint> make_point(const Figure& figure, const std::vector<Cell>& cells, const std::string& panel,
+                                      const std::string& series, const std::string& category) {
+    MeasuredQuantity quantity;
+    quantity.measure = figure.y, quantity.where = figure.where;
+    if (!figure.panels.empty()) quantity.where.wanted[figure.panels] = {panel};
+    quantity.first.wanted[figure.series] = {series};
+    const bool x_is_attribute = figure.kind == FigureKind::bars || figure.x == "parameter";
+    if (x_is_attribute) quantity.first.wanted[figure.x] = {category};
+    quantity.second = figure.relative_to;
+    const bool is_relative = !figure.relative_to.wanted.empty();
+    // Where groups are scenes or views, the base is in the same one.
+    if (is_relative && figure.kind == FigureKind::bars && figure.x != "method" && figure.x != "curve") {
+        quantity.where.wanted[figure.x] = {category};
+        quantity.first.wanted.erase(figure.x);
+    }
+    if (is_relative) quantity.kind = QuantityKind::ratio;
+    const Measured measured = measure_quantity(cells, quantity);
+    if (measured.cases.empty()) return std::nullopt;
+
+    FigurePoint point{panel, series, category};
+    const MeanSummary mean = is_relative ? measured.summary : average(measured.cases, !figure.linear_y);
+    if (mean.count == 0) return std::nullopt;
+    point.y = mean.mean, point.count = mean.count;
+    if (is_relative && std::isfinite(mean.lower)) point.lower = mean.lower, point.upper = mean.upper;
+    if (figure.x == "parameter") point.x = std::stod(category);
+    if (!x_is_attribute) {
+        quantity.kind = QuantityKind::value, quantity.measure = figure.x;
+        const Measured across = measure_quantity(cells, quantity);
+        if (across.cases.empty()) return std::nullopt;
+        point.x = average(across.cases, !figure.linear_x).mean;
+    }
+    return point;
+}
+
+std::vector<FigurePoint> points_of(const Figure& figure, const std::vector<Cell>& cells) {
+    const bool x_is_attribute = figure.kind == FigureKind::bars || figure.x == "parameter";
+    const std::vector<std::string> categories = values_of(x_is_attribute ? figure.x : "", figure, cells);
+    std::vector<FigurePoint> points;
+    for (const std::string& panel : values_of(figure.panels, figure, cells)) {
+        for (const std::string& series : values_of(figure.series, figure, cells)) {
+            for (const std::string& category : categories) {
+                if (auto point = make_point(figure, cells, panel, series, category)) points.push_back(*point);
+            }
+        }
+    }
+    return points;
+}
+
+Chart make_panel(const Figure& figure, const std::vector<FigurePoint>& points, const std::string& panel,
+                 const std::vector<std::string>& categories) {
+    Chart chart{panel, figure.x_label, figure.y_label, {}};
+    const bool is_bars = figure.kind == FigureKind::bars;
+    if (is_bars) chart.categories = categories;
+    chart.x_scale = figure.linear_x ? ChartScale::linear : ChartScale::logarithmic;
+    chart.y_scale = figure.linear_y ? ChartScale::linear : ChartScale::logarithmic;
+    const auto style = is_bars ? ChartSeries::Style::bars : ChartSeries::Style::markers_and_line;
+    std::vector<std::string> names;  // of all panels, so that a name has one colour
+    for (const FigurePoint& point : points) {
+        if (std::ranges::find(names, point.series) == names.end()) names.push_back(point.series);
+    }
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        ChartSeries series{names[i], chart_colour(i), {}, style};
+        for (const FigurePoint& point : points) {
+            if (point.panel != panel || point.series != names[i]) continue;
+            const auto place = std::ranges::find(categories, point.category) - categories.begin();
+            series.points.push_back(
+                {is_bars ? static_cast<double>(place) : point.x, point.y, point.lower, point.upper});
+        }
+        std::ranges::stable_sort(series.points, {}, &ChartPoint::x);
+        if (!series.points.empty()) chart.series.push_back(std::move(series));
+    }
+    return chart;
+}
+
+}  // namespace
+
+std::string print_chart(const Figure& figure, const std::vector<Cell>& cells) {
+    const std::vector<FigurePoint> points = points_of(figure, cells);
+    if (points.empty()) return "";
+    std::vector<std::string> categories;
+    if (figure.kind == FigureKind::bars) categories = values_of(figure.x, figure, cells);
+    std::vector<Chart> charts;
+    for (const std::string& panel : values_of(figure.panels, figure, cells))
+        charts.push_back(make_panel(figure, points, panel, categories));
+    return print_svg(charts, std::min<int>(3, static_cast<int>(charts.size())), figure.title,
+                     figure.source.empty() ? "" : fmt::format("After {}.", figure.source));
+}
+
+ResultTable chart_numbers(const Figure& figure, const std::vector<Cell>& cells) {
+    const bool is_bars = figure.kind == FigureKind::bars;
+    ResultTable table;
+    table.columns = {
+        figure.panels.empty() ? "panel" : figure.panels, figure.series, figure.x, figure.y, "lower", "upper", "cells"};
+    table.names = is_bars ? 3 : 2;
+    for (const FigurePoint& point : points_of(figure, cells)) {
+        const bool has_interval = point.upper > point.lower;
+        table.rows.push_back({point.panel, point.series, is_bars ? point.category : fmt::format("{:.6g}", point.x),
+                              fmt::format("{:.6g}", point.y), has_interval ? fmt::format("{:.6g}", point.lower) : "",
+                              has_interval ? fmt::format("{:.6g}", point.upper) : "", fmt::format("{}", point.count)});
+    }
+    return table;
+}
+
+ResultTable make_table(const Figure& figure, const std::vector<Cell>& cells) {
+    std::vector<std::vector<std::string>> keys;
+    for (const Cell& cell : cells) {
+        if (!figure.where.matches(cell)) continue;
+        std::vector<std::string> key;
+        for (const std::string& attribute : figure.rows) key.push_back(attribute_of(cell, attribute));
+        if (std::ranges::find(keys, key) == keys.end()) keys.push_back(std::move(key));
+    }
+    ResultTable table;
+    table.columns = figure.rows, table.names = figure.rows.size();
+    table.columns.insert(table.columns.end(), figure.columns.begin(), figure.columns.end());
+    for (const std::vector<std::string>& key : keys) {
+        MeasuredQuantity quantity;
+        quantity.where = figure.where;
+        for (std::size_t i = 0; i < key.size(); ++i) quantity.first.wanted[figure.rows[i]] = {key[i]};
+        std::vector<std::string> row = key;
+        for (const std::string& column : figure.columns) {
+            quantity.measure = column;
+            const MeanSummary mean = measure_quantity(cells, quantity).summary;
+            row.push_back(mean.count > 0 ? short_number(mean.mean) : "-");
+        }
+        table.rows.push_back(std::move(row));
+    }
+    return table;
+}
+
+ResultTable make_originals_table(const Originals& originals, const std::vector<Cell>& cells) {
+    const OriginalRow& base = *std::ranges::find(originals.rows, originals.base, &OriginalRow::name);
+    const auto quantity_of = [&](const OriginalRow& row) {
+        MeasuredQuantity quantity;
+        quantity.measure = originals.measure, quantity.where = originals.where, quantity.first = row.of;
+        return quantity;
+    };
+    const auto mean_of = [&](const OriginalRow& row) {
+        return average(measure_quantity(cells, quantity_of(row)).cases, true);
+    };
+    ResultTable table;
+    const std::string unit = originals.unit.empty() ? "" : fmt::format(", {}", originals.unit);
+    table.columns = {originals.title, "original" + unit, "to base", "here" + unit, "to base [95 %]", "views"};
+    for (const OriginalRow& row : originals.rows) {
+        const MeanSummary ours = mean_of(row);
+        MeasuredQuantity ratio = quantity_of(row);
+        ratio.kind = QuantityKind::ratio, ratio.second = base.of;
+        const Measured paired = measure_quantity(cells, ratio);
+        std::string ratio_text = "-";
+        if (row.name == base.name) {
+            ratio_text = ours.count > 0 ? "1" : "-";
+        } else if (paired.summary.count > 0) {
+            ratio_text = short_number(paired.summary.mean);
+            if (paired.summary.count > 1)
+                ratio_text +=
+                    fmt::format(" [{}, {}]", short_number(paired.summary.lower), short_number(paired.summary.upper));
+        } else if (const MeanSummary ours_base = mean_of(base); ours.count > 0 && ours_base.count > 0) {
+            ratio_text = short_number(ours.mean / ours_base.mean);
+        }
+        table.rows.push_back({row.name, short_number(row.original), short_number(row.original / base.original),
+                              ours.count > 0 ? short_number(ours.mean) : "not here", ratio_text,
+                              fmt::format("{}", ours.count)});
+    }
+    return table;
+}
+
+}  // namespace plumb
