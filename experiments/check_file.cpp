@@ -51,6 +51,25 @@ void require_rows(const CheckFile& check, const std::string& source) {
     }
 }
 
+// A scene's own parameters come after a method's.
+void require_broken_in_scenes(const ConfigReader& reader, const MustFail& must_fail, const ConfigValue& parameters,
+                              const CheckFile& check) {
+    const Threshold& threshold = *check.find_threshold(must_fail.threshold);
+    for (const ExperimentScene& scene : check.experiment.scenes) {
+        if (!matches_pattern(threshold.rows.scene, scene.scene)) continue;
+        const Method in_scene = method_in_scene(must_fail.method, scene, reader.source());
+        Method broken = in_scene;
+        override_method(broken, parameters, reader.source());
+        if (method_hash(broken) == method_hash(in_scene)) continue;
+        reader.fail(
+            "",
+            fmt::format("scene '{}' sets the same parameter, which mends the method there ({} = {} instead of "
+                        "{}); break another one",
+                        scene.scene, diff_methods(broken, in_scene).front().parameter,
+                        diff_methods(broken, in_scene).front().second, diff_methods(broken, in_scene).front().first));
+    }
+}
+
 MustFail read_must_fail(ConfigReader& reader, const CheckFile& check) {
     MustFail must_fail;
     must_fail.name = reader.required_text("name");
@@ -76,12 +95,12 @@ MustFail read_must_fail(ConfigReader& reader, const CheckFile& check) {
     ConfigReader table(named, reader.source(), "must_fail.method");
     table.required_text("base");
     if (table.has("name")) table.fail("name", "is that of the [[must_fail]] table; remove it");
-    must_fail.parameters = named;
-    take_members(must_fail.parameters, {"base"});
-    if (std::get<ConfigMembers>(must_fail.parameters.value).empty())
-        table.fail("", "breaks nothing: set at least one parameter");
+    ConfigValue parameters = named;
+    take_members(parameters, {"base"});
+    if (std::get<ConfigMembers>(parameters.value).empty()) table.fail("", "breaks nothing: set at least one parameter");
     std::get<ConfigMembers>(named.value).push_back({"name", {must_fail.name, named.line}});
     must_fail.method = parse_method(named, reader.source(), known);
+    require_broken_in_scenes(table, must_fail, parameters, check);
     reader.finish();
     return must_fail;
 }

@@ -21,8 +21,7 @@ namespace plumb {
 struct MustFail {
     std::string name;
     std::string threshold;
-    Method method;           // broken; called `name`
-    ConfigValue parameters;  // what is broken, so that it holds in scenes that override the same parameters
+    Method method;  // broken; called `name`
 };
 
 struct CheckFile {
@@ -36,7 +35,8 @@ struct CheckFile {
 };
 
 // Throws ConfigError with file and line; also for thresholds that name a scene, plane or method that the experiment
-// does not have. What a scene's views are called is known only once it is loaded.
+// does not have (what a scene's views are called is known only once it is loaded), and for a method that must fail
+// where the scene's own parameters would mend it.
 CheckFile load_check_file(const std::filesystem::path& file);
 
 // The names of the thresholds that have no limit yet.

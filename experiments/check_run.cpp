@@ -118,12 +118,10 @@ Experiment must_fail_experiment(const Experiment& experiment, const MustFail& mu
         std::erase_if(scene.paths, [&](const ExperimentPath& path) {
             return !of_paths || !matches_pattern(threshold.rows.path, path.path);
         });
-        // Where all views are asked for (none is named), or none matches, all are rendered.
+        // A scene without views would be rendered from all of them.
         const auto other_view = [&](const std::string& view) { return !matches_pattern(threshold.rows.view, view); };
+        if (of_paths && scene.views.size() > 1) scene.views.resize(1);
         if (!std::ranges::all_of(scene.views, other_view)) std::erase_if(scene.views, other_view);
-        // The scene's own parameters come after a method's; what is broken must come after them.
-        for (const ConfigMember& member : std::get<ConfigMembers>(must_fail.parameters.value))
-            std::get<ConfigMembers>(scene.method_overrides.value).push_back(member);
     }
     return result;
 }
