@@ -106,7 +106,7 @@ private:
     ConvergenceMeasurement measure(const Frame& image, const Frame& reference, const std::string& plane, int samples,
                                    int seed) const {
         ReferencedErrorSettings settings;
-        settings.resamples = 40;  // the seeds tell how sure it is, not the interval
+        settings.bootstrap.resamples = 40;  // the seeds tell how sure it is, not the interval
         const ReferencedError error =
             referenced_error(image, reference, plane, experiment_.reference_samples, settings);
         return {samples, seed, error.mse, error.reference_noise_mse, false};

@@ -13,4 +13,7 @@ namespace plumb {
 std::vector<Timing> time_interleaved(const std::vector<Pipeline*>& pipelines, const View& view, const Frame* truth,
                                      const ExperimentTiming& settings);
 
+// Medians and quartiles over frames that were timed one by one; all have the same passes. None: zeros.
+Timing median_timing(const std::vector<Timing>& frames);
+
 }  // namespace plumb

@@ -13,6 +13,7 @@
 
 #include "experiments/build_facts.h"
 #include "experiments/file_lock.h"
+#include "experiments/frame_checksum.h"
 #include "frames/exr.h"
 #include "frames/image_error.h"
 
@@ -20,21 +21,6 @@ namespace plumb {
 namespace {
 
 constexpr int file_format = 2;  // of the key and the facts below
-
-std::string checksum(const Frame& frame) {
-    XXH3_state_t* state = XXH3_createState();
-    XXH3_128bits_reset(state);
-    for (const std::string& name : frame.plane_names()) {
-        const Image& plane = frame.plane(name);
-        const int shape[] = {plane.width(), plane.height(), plane.channels()};
-        XXH3_128bits_update(state, name.data(), name.size());
-        XXH3_128bits_update(state, shape, sizeof(shape));
-        XXH3_128bits_update(state, plane.values().data(), plane.values().size_bytes());
-    }
-    const XXH128_hash_t hash = XXH3_128bits_digest(state);
-    XXH3_freeState(state);
-    return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
-}
 
 const std::string& fact(const Frame& frame, const std::string& name) {
     const auto found = frame.facts.find(name);
@@ -57,13 +43,33 @@ ReferenceResult read_reference(const std::filesystem::path& file, const std::str
     ReferenceResult result;
     result.frame = read_exr(file);
     if (fact(result.frame, "reference.key") != key) throw ImageError("it holds another reference");
-    if (fact(result.frame, "reference.checksum") != checksum(result.frame))
+    if (fact(result.frame, "reference.checksum") != frame_checksum(result.frame))
         throw ImageError("its pixels do not match its checksum");
     result.samples = number_fact<int>(result.frame, "reference.samples");
     result.seconds = number_fact<double>(result.frame, "reference.seconds");
     result.rays = number_fact<std::uint64_t>(result.frame, "reference.rays");
     return result;
 }
+
+std::string optional_view_key(const std::optional<View>& view) { return view ? view_key(*view) : "none"; }
+
+std::string oracle_key(const std::optional<OracleSettings>& oracle) {
+    if (!oracle) return "none";
+    return fmt::format("{} layers {:a} apart of {}", oracle->layers, oracle->minimum_separation,
+                       view_key(oracle->view));
+}
+
+void write_reference(const std::filesystem::path& file, const std::string& key, const ReferenceResult& result) {
+    Frame frame = result.frame;
+    frame.facts["reference.key"] = key;
+    frame.facts["reference.checksum"] = frame_checksum(frame);
+    frame.facts["reference.samples"] = fmt::format("{}", result.samples);
+    frame.facts["reference.seconds"] = fmt::format("{}", result.seconds);
+    frame.facts["reference.rays"] = fmt::format("{}", result.rays);
+    write_exr(file, frame);
+}
+
+}  // namespace
 
 // Hexadecimal floats: two cameras that differ in the last bit are two cameras.
 std::string view_key(const View& view) {
@@ -80,26 +86,6 @@ std::string view_key(const View& view) {
     return text;
 }
 
-std::string view_key(const std::optional<View>& view) { return view ? view_key(*view) : "none"; }
-
-std::string oracle_key(const std::optional<OracleSettings>& oracle) {
-    if (!oracle) return "none";
-    return fmt::format("{} layers {:a} apart of {}", oracle->layers, oracle->minimum_separation,
-                       view_key(oracle->view));
-}
-
-void write_reference(const std::filesystem::path& file, const std::string& key, const ReferenceResult& result) {
-    Frame frame = result.frame;
-    frame.facts["reference.key"] = key;
-    frame.facts["reference.checksum"] = checksum(frame);
-    frame.facts["reference.samples"] = fmt::format("{}", result.samples);
-    frame.facts["reference.seconds"] = fmt::format("{}", result.seconds);
-    frame.facts["reference.rays"] = fmt::format("{}", result.rays);
-    write_exr(file, frame);
-}
-
-}  // namespace
-
 std::string reference_key(const Scene& scene, const View& view, const ReferenceSettings& settings,
                           const TimeSpan& span) {
     const Quantities& quantities = settings.quantities;
@@ -107,7 +93,7 @@ std::string reference_key(const Scene& scene, const View& view, const ReferenceS
     std::ranges::sort(planes);
     std::string key = fmt::format("format {}; integrator {}; scene {:016x}; time {:a} to {:a}; {}; previous {}",
                                   file_format, build_facts().integrator_hash, scene.content_hash(), span.begin,
-                                  span.end, view_key(view), view_key(settings.previous_view));
+                                  span.end, view_key(view), optional_view_key(settings.previous_view));
     key += fmt::format("; planes {}; ao_radius {:a}; ao_falloff {}; bounces {}; indirect_radius {:a} {}",
                        fmt::join(planes, ","), quantities.ao_radius, to_string(quantities.ao_falloff),
                        quantities.bounces, quantities.indirect_radius, to_string(quantities.indirect_falloff));
@@ -116,10 +102,10 @@ std::string reference_key(const Scene& scene, const View& view, const ReferenceS
     key += fmt::format("; samples {} to {}; target_error {:a}; seed {}; minimum_separation {:a}; antialias {}",
                        settings.first_sample, settings.samples, settings.target_error, settings.seed,
                        settings.minimum_separation, settings.antialias);
-    key +=
-        fmt::format("; emitter_sampling {}; points {}; roulette_after {}; oracle {}; shutter opens at {}",
-                    static_cast<int>(settings.emitter_sampling), static_cast<int>(settings.points),
-                    settings.roulette_after, oracle_key(settings.oracle), view_key(settings.view_at_shutter_opening));
+    key += fmt::format("; emitter_sampling {}; points {}; roulette_after {}; oracle {}; shutter opens at {}",
+                       static_cast<int>(settings.emitter_sampling), static_cast<int>(settings.points),
+                       settings.roulette_after, oracle_key(settings.oracle),
+                       optional_view_key(settings.view_at_shutter_opening));
     return key;
 }
 

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "experiments/path_run.h"
 #include "experiments/pictures.h"
 #include "experiments/result_files.h"
 #include "experiments/scene_run.h"
@@ -32,6 +33,7 @@ RunResults run_experiment(const Experiment& experiment, const SceneFinder& finde
     const std::unique_ptr<GlContext> context = GlContext::create(options.backend);
     describe_context(context->info(), results);
     const ReferenceCache cache(options.cache_dir);
+    const CellStore cells(options.output / "cells");
     ProgressLine progress;
     const auto stopped = [&] { return options.stop && options.stop->load(); };
 
@@ -42,11 +44,30 @@ RunResults run_experiment(const Experiment& experiment, const SceneFinder& finde
             const Scene scene = finder.load(entry.scene);
             results.scene_hashes[entry.scene] = fmt::format("{:016x}", scene.content_hash());
             const double from = part * static_cast<double>(i);
-            SceneRun run(experiment, entry, scene,
-                         {*context, cache, progress, options.stop, options.threads, from, from + part});
-            run.run(results);
-            write_pictures(run, experiment, entry.scene, options.output, results);
-            if (options.write_frames) write_frames(run, experiment, entry.scene, options.output);
+            // A frame of a path takes about as long as a view.
+            const auto views = static_cast<double>(entry.views.empty() ? scene.cameras.size() : entry.views.size());
+            double frames = views;
+            for (const ExperimentPath& path : entry.paths) frames += path.frames;
+            const ProgressPart all{from, from + part};
+            SceneRunControl control{
+                *context, cache, cells, progress, options.stop, options.threads, all.part(0.0, views / frames)};
+            {
+                SceneRun run(experiment, entry, scene, control);
+                run.run(results);
+                write_pictures(run, experiment, entry.scene, options.output, results);
+                if (options.write_frames) write_frames(run, experiment, entry.scene, options.output);
+            }
+            double done = views;
+            for (const ExperimentPath& path : entry.paths) {
+                if (stopped()) break;
+                control.part = all.part(done / frames, (done + path.frames) / frames);
+                done += path.frames;
+                try {
+                    PathRun(experiment, entry, scene, path, control, options.output).run(results);
+                } catch (const std::exception& error) {
+                    results.failures.push_back({fmt::format("{} / {}", entry.scene, path.path), error.what()});
+                }
+            }
         } catch (const std::exception& error) {
             results.failures.push_back({entry.scene, error.what()});
         }
@@ -56,6 +77,7 @@ RunResults run_experiment(const Experiment& experiment, const SceneFinder& finde
     results.summary = summarise(results);
     results.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     write_result_files(results, options.output);
+    if (!results.interrupted) cells.clear();
     return results;
 }
 

@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
-#include <limits>
 #include <tuple>
 
 #include <fmt/format.h>
 
 #include "experiments/method_timing.h"
+#include "experiments/row_measurement.h"
 #include "experiments/settling.h"
-#include "metrics/comparison.h"
 #include "scenes/scene_error.h"
 
 namespace plumb {
@@ -19,25 +18,28 @@ namespace {
 // Any other seed makes paths independent of the reference's; this one flips half of the bits.
 constexpr std::uint64_t independent_seed_mask = 0x9E3779B97F4A7C15;
 
+std::string oracle_name(int layers) {
+    if (layers == 0) return "oracle, all in view";
+    return fmt::format("oracle, {} layer{}", layers, layers == 1 ? "" : "s");
+}
+
 constexpr double share_of_references = 0.7;  // of a scene's time, for the progress line only
 
 std::ptrdiff_t place_of(const std::vector<std::string>& names, const std::string& name) {
     return std::ranges::find(names, name) - names.begin();
 }
 
-std::string refusal_of(const ReferencedError& error) {
-    const std::string noise = fmt::format("not measured: the truth's noise (RMSE {:.2g}) is too near to the difference",
-                                          std::sqrt(error.reference_noise_mse));
-    if (const auto samples = error.samples_needed())
-        return fmt::format("{}; {} samples per pixel would do", noise, *samples);
-    return noise + "; no number of samples can be told, because the difference is lost in it";
-}
-
 }  // namespace
 
 SceneRun::SceneRun(const Experiment& experiment, const ExperimentScene& entry, const Scene& scene,
                    const SceneRunControl& control)
-    : experiment_(experiment), entry_(entry), scene_(scene), control_(control), tracer_(scene), views_(entry.views) {
+    : experiment_(experiment),
+      entry_(entry),
+      scene_(scene),
+      control_(control),
+      tracer_(scene),
+      references_(control.cache, control.progress, control.stop, control.threads),
+      views_(entry.views) {
     if (views_.empty()) {
         for (const Camera& camera : scene.cameras) views_.push_back(camera.name);
     }
@@ -47,8 +49,7 @@ SceneRun::SceneRun(const Experiment& experiment, const ExperimentScene& entry, c
 }
 
 void SceneRun::show(double fraction, const std::string& text) {
-    control_.progress.show(std::lerp(control_.progress_from, control_.progress_to, fraction),
-                           fmt::format("{}: {}", entry_.scene, text));
+    control_.progress.show(control_.part.at(fraction), fmt::format("{}: {}", entry_.scene, text));
 }
 
 double SceneRun::measuring_progress(const std::string& plane, double done) const {
@@ -59,6 +60,22 @@ double SceneRun::measuring_progress(const std::string& plane, double done) const
 
 View SceneRun::view_of(const std::string& name) const {
     return View(scene_.camera(name), experiment_.width, experiment_.height);
+}
+
+std::string SceneRun::cell_key(const std::string& view, const std::string& plane) const {
+    return fmt::format("plane {}; {}", plane,
+                       methods_key(experiment_, entry_, scene_, view_of(view), control_.context.info()));
+}
+
+bool SceneRun::load_cell(const std::string& key) {
+    std::optional<std::vector<PlaneImage>> kept = control_.cells.load(key);
+    if (kept) std::ranges::move(*kept, std::back_inserter(images_));
+    return kept.has_value();
+}
+
+void SceneRun::keep_cell(const std::string& key, std::vector<PlaneImage> images) {
+    if (!key.empty()) control_.cells.save(key, images);
+    std::ranges::move(images, std::back_inserter(images_));
 }
 
 void SceneRun::run(RunResults& results) {
@@ -75,6 +92,14 @@ void SceneRun::run(RunResults& results) {
         render_methods(plane, results);
         render_path_tracer_curve(plane, results);
     }
+    for (const std::string& view : views_) {
+        if (stopped()) return;
+        try {
+            render_oracle(view, results);
+        } catch (const std::exception& error) {
+            results.failures.push_back({fmt::format("{} / {} / oracle", entry_.scene, view), error.what()});
+        }
+    }
     const auto first = static_cast<std::ptrdiff_t>(results.rows.size());
     for (const PlaneImage& image : images_) measure(image, results);
     std::ranges::stable_sort(results.rows.begin() + first, results.rows.end(), {}, [&](const ResultRow& row) {
@@ -84,43 +109,23 @@ void SceneRun::run(RunResults& results) {
 }
 
 void SceneRun::render_truths(const std::string& view, RunResults& results) {
-    const auto place = static_cast<double>(place_of(views_, view)) / static_cast<double>(views_.size());
+    const double views = static_cast<double>(views_.size()), place = static_cast<double>(place_of(views_, view));
+    const ProgressPart part =
+        control_.part.part(share_of_references * place / views, share_of_references * (place + 1.0) / views);
     ViewTruths truths;
-    truths.full = render_reference(view, full_truth_settings(experiment_, entry_), "full", place, results);
+    truths.full = references_.render(tracer_, scene_, view_of(view), full_truth_settings(experiment_, entry_),
+                                     {entry_.scene, view, "full"}, part.part(0.0, 0.5), results);
     const auto limited = limited_truth_settings(experiment_, entry_);
     if (limited && !stopped()) {
         truths.limit = entry_.indirect_radius;
-        truths.limited = render_reference(view, *limited, fmt::format("within {} m", truths.limit),
-                                          place + 0.5 / static_cast<double>(views_.size()), results);
+        truths.limited = references_.render(tracer_, scene_, view_of(view), *limited,
+                                            {entry_.scene, view, fmt::format("within {} m", truths.limit)},
+                                            part.part(0.5, 1.0), results);
     }
-    if (!stopped()) truths_.emplace(view, std::move(truths));
-}
-
-ReferenceResult SceneRun::render_reference(const std::string& view, const ReferenceSettings& settings,
-                                           const std::string& truth, double fraction, RunResults& results) {
-    const View camera_view = view_of(view);
-    const std::string what = fmt::format("{}, truth ({})", view, truth);
-    ReferenceControl control;
-    control.threads = control_.threads;
-    control.stop = control_.stop;
-    const double share = share_of_references / static_cast<double>(views_.size());
-    control.on_progress = [&](const ReferenceProgress& progress) {
-        const double done = static_cast<double>(progress.samples_done) / std::max(1, progress.samples_wanted);
-        show(share_of_references * fraction + share * 0.5 * done,
-             fmt::format("{}: {} of {} samples, {:.1f} M rays/s, error {:.2g}", what, progress.samples_done,
-                         progress.samples_wanted, progress.rays_per_second * 1e-6, progress.relative_error));
-    };
-    CachedReference cached = control_.cache.get(
-        reference_key(scene_, camera_view, settings),
-        [&](const std::filesystem::path& checkpoint) {
-            control.checkpoint = checkpoint;
-            return tracer_.render(camera_view, settings, control);
-        },
-        [&] { control_.progress.log(fmt::format("{} / {}: another run renders it; waiting", entry_.scene, what)); });
-    if (!cached.warning.empty()) control_.progress.log("warning: " + cached.warning);
-    results.references.push_back(
-        {entry_.scene, view, truth, cached.result.samples, cached.result.seconds, cached.from_cache});
-    return std::move(cached.result);
+    if (stopped()) return;
+    regions_[view] =
+        regions_of(tracer_.gbuffer(view_of(view), {.minimum_separation = entry_.minimum_separation}, control_.threads));
+    truths_.emplace(view, std::move(truths));
 }
 
 void SceneRun::render_methods(const std::string& plane, RunResults& results) {
@@ -128,6 +133,11 @@ void SceneRun::render_methods(const std::string& plane, RunResults& results) {
     quantities.planes = {plane};
     quantities.ao_radius = entry_.ao_radius;
 
+    std::vector<std::string> missing;  // views that no run before this one finished
+    for (const auto& [view, truths] : truths_) {
+        if (!load_cell(cell_key(view, plane))) missing.push_back(view);
+    }
+    if (missing.empty()) return;
     // One pipeline per method for this plane alone, so that its time is the time of what the plane needs.
     std::vector<std::unique_ptr<Pipeline>> pipelines;
     std::vector<Pipeline*> working;
@@ -147,9 +157,9 @@ void SceneRun::render_methods(const std::string& plane, RunResults& results) {
     }
     if (working.empty()) return;
 
-    for (const std::string& view : views_) {
+    for (const std::string& view : missing) {
         const auto truths = truths_.find(view);
-        if (stopped() || truths == truths_.end()) continue;
+        if (stopped()) return;
         show(measuring_progress(plane, 0.0), fmt::format("{}, {}: methods", view, plane));
         const View camera_view = view_of(view);
         std::vector<PlaneImage> images;
@@ -163,13 +173,9 @@ void SceneRun::render_methods(const std::string& plane, RunResults& results) {
                 const Frame* truth = &truths->second.full.frame;
                 for (int frame = 1; frame < frames[i]; ++frame) working[i]->time_passes(camera_view, truth);
                 RasterResult raster = working[i]->render(camera_view, nullptr, truth);
-                images.push_back({view,
-                                  plane,
-                                  methods[i]->name,
-                                  std::move(raster.frame.plane(plane)),
-                                  0,
-                                  {},
-                                  static_cast<int>(working[i]->gbuffer_bytes_per_pixel())});
+                PlaneImage& image = images.emplace_back(
+                    PlaneImage{view, plane, methods[i]->name, std::move(raster.frame.plane(plane))});
+                image.gbuffer_bytes_per_pixel = static_cast<int>(working[i]->gbuffer_bytes_per_pixel());
                 rendered.push_back(working[i]);
             } catch (const std::exception& error) {
                 fail(methods[i]->name, error);
@@ -178,10 +184,10 @@ void SceneRun::render_methods(const std::string& plane, RunResults& results) {
         try {
             std::vector<Timing> timings =
                 time_interleaved(rendered, camera_view, &truths->second.full.frame, experiment_.timing);
-            for (std::size_t i = 0; i < images.size(); ++i) {
-                images[i].timing = std::move(timings[i]);
-                images_.push_back(std::move(images[i]));
-            }
+            for (std::size_t i = 0; i < images.size(); ++i) images[i].timing = std::move(timings[i]);
+            // A cell with a failure is tried again by the next run.
+            const bool whole = images.size() == experiment_.methods.size();
+            keep_cell(whole ? cell_key(view, plane) : "", std::move(images));
         } catch (const std::exception& error) {
             fail("timing", error);
         }
@@ -202,16 +208,19 @@ void SceneRun::render_path_tracer_curve(const std::string& plane, RunResults& re
             show(measuring_progress(plane, 0.5),
                  fmt::format("{}, {}: path tracer at {} samples", view, plane, samples));
             settings.samples = samples;
+            const std::string key = fmt::format("path tracer; {}", reference_key(scene_, view_of(view), settings));
+            if (load_cell(key)) continue;
             try {
                 ReferenceControl control;
                 control.threads = control_.threads;
                 ReferenceResult result = tracer_.render(view_of(view), settings, control);
-                PlaneImage image{
-                    view,    plane, fmt::format("path tracer, {} spp", samples), std::move(result.frame.plane(plane)),
-                    samples, {}};
+                PlaneImage image{view, plane, fmt::format("path tracer, {} spp", samples),
+                                 std::move(result.frame.plane(plane)), samples};
                 const double milliseconds = 1000.0 * result.seconds;
                 image.timing = {milliseconds, milliseconds, milliseconds, 1, {{"path tracer", milliseconds}}};
-                images_.push_back(std::move(image));
+                std::vector<PlaneImage> cell;
+                cell.push_back(std::move(image));
+                keep_cell(key, std::move(cell));
             } catch (const std::exception& error) {
                 results.failures.push_back(
                     {fmt::format("{} / {} / {} / path tracer, {} spp", entry_.scene, view, plane, samples),
@@ -221,51 +230,70 @@ void SceneRun::render_path_tracer_curve(const std::string& plane, RunResults& re
     }
 }
 
+// The truth as rays see it that meet only what layers of the view hold, with the truth's own samples: what both have in
+// common cancels in their difference.
+void SceneRun::render_oracle(const std::string& view, RunResults& results) {
+    const auto truths = truths_.find(view);
+    if (truths == truths_.end()) return;
+    for (const int layers : experiment_.oracle_layers) {
+        if (stopped()) return;
+        ReferenceSettings settings = full_truth_settings(experiment_, entry_);
+        settings.quantities.planes = experiment_.planes;
+        std::erase_if(settings.quantities.planes,
+                      [&](const std::string& plane) { return !truths->second.full.frame.has("half_a." + plane); });
+        if (settings.quantities.planes.empty()) return;
+        settings.oracle = OracleSettings{view_of(view), layers, entry_.minimum_separation};
+        const std::string name = oracle_name(layers);
+        ReferenceResult result = references_.render(tracer_, scene_, view_of(view), settings,
+                                                    {entry_.scene, view, name}, control_.part.part(1.0, 1.0), results);
+        if (!result.complete) return;
+        for (const std::string& plane : settings.quantities.planes) {
+            PlaneImage& image =
+                images_.emplace_back(PlaneImage{view, plane, name, std::move(result.frame.plane(plane))});
+            image.oracle_layers = layers;
+            image.halves = {std::move(result.frame.plane("half_a." + plane)),
+                            std::move(result.frame.plane("half_b." + plane))};
+        }
+    }
+}
+
 void SceneRun::measure(const PlaneImage& image, RunResults& results) {
     for (const Truth& truth : truths_.at(image.view).of(image.plane)) {
-        // The path tracer's curve is light without a limit.
-        if (image.path_tracer_samples > 0 && truth.frame != &truths_.at(image.view).full.frame) continue;
+        // The path tracer's curve and the oracle are light without a limit.
+        const bool is_full = truth.frame == &truths_.at(image.view).full.frame;
+        if ((image.path_tracer_samples > 0 || image.oracle_layers >= 0) && !is_full) continue;
         try {
-            ResultRow row;
-            row.scene = entry_.scene, row.view = image.view, row.plane = image.plane;
-            row.method = image.method, row.truth = truth.name, row.path_tracer_samples = image.path_tracer_samples;
-            if (const Method* method = find_method(experiment_.methods, image.method)) {
-                row.parameters = method_in_scene(*method, entry_, experiment_.file.string());
-            }
-            row.timing = image.timing;
-            row.gbuffer_bytes_per_pixel = image.gbuffer_bytes_per_pixel;
-            row.reference_samples = truth.samples;
-
-            Frame test(image.image.width(), image.image.height());
-            test.set(image.plane, image.image);
-            Frame reference(test.width(), test.height());
-            for (const char* prefix : {"", "half_a.", "half_b."}) {
-                const std::string name = prefix + image.plane;
-                if (truth.frame->has(name)) reference.set(name, truth.frame->plane(name));
-            }
-            reference.facts["samples"] = fmt::format("{}", truth.samples);
-            ComparisonSettings settings;
-            settings.referenced.noise_limit = experiment_.reference.most_noise;
-            const PlaneComparison comparison = compare_frames(test, reference, settings).planes.front();
-
-            row.measures = comparison.measures();
-            row.mse = comparison.best_mse();
-            row.mse_lower = row.mse_upper = std::numeric_limits<double>::quiet_NaN();
-            row.psnr = comparison.errors.psnr;
-            row.ssim = comparison.ssim ? comparison.ssim->mean : std::numeric_limits<double>::quiet_NaN();
-            row.data_range = comparison.errors.peak;
-            row.measured = true;
-            if (comparison.referenced) {
-                row.mse_lower = comparison.referenced->lower, row.mse_upper = comparison.referenced->upper;
-                row.noise_mse = comparison.referenced->reference_noise_mse;
-                row.measured = comparison.referenced->trustworthy;
-                if (!row.measured) row.refusal = refusal_of(*comparison.referenced);
-            }
+            ResultRow row = measure_row(image, truth, regions_.at(image.view), experiment_.reference.most_noise);
+            row.scene = entry_.scene;
+            if (row.is_method()) describe_method(experiment_, entry_, image.method, row);
             results.rows.push_back(std::move(row));
         } catch (const std::exception& error) {
             results.failures.push_back(
                 {fmt::format("{} / {} / {} / {}", entry_.scene, image.view, image.plane, image.method), error.what()});
         }
+    }
+}
+
+std::string methods_key(const Experiment& experiment, const ExperimentScene& entry, const Scene& scene,
+                        const View& view, const GlInfo& gl) {
+    // The truth's key names scene, view and quantities; some methods take stages from it.
+    std::string key =
+        fmt::format("OpenGL {} {}; timing {} {}; truth {}", gl.renderer, gl.version, experiment.timing.warm_up,
+                    experiment.timing.repetitions, reference_key(scene, view, full_truth_settings(experiment, entry)));
+    for (const Method& method : experiment.methods) {
+        const Method in_scene = method_in_scene(method, entry, experiment.file.string());
+        key += fmt::format("; {} {:016x}", method.name, method_hash(in_scene));
+    }
+    return key;
+}
+
+void describe_method(const Experiment& experiment, const ExperimentScene& entry, const std::string& method,
+                     ResultRow& row) {
+    if (const Method* found = find_method(experiment.methods, method))
+        row.parameters = method_in_scene(*found, entry, experiment.file.string());
+    if (const auto point = experiment.sweep_points.find(method); point != experiment.sweep_points.end()) {
+        row.curve = point->second.curve, row.curve_parameter = point->second.parameter;
+        row.curve_value = point->second.value;
     }
 }
 

@@ -7,31 +7,25 @@
 #include <string>
 #include <vector>
 
-#include "experiments/progress_line.h"
-#include "experiments/reference_cache.h"
+#include "experiments/cell_store.h"
+#include "experiments/plane_image.h"
+#include "experiments/reference_renderer.h"
 #include "experiments/results.h"
 #include "experiments/view_truths.h"
+#include "metrics/regions.h"
 #include "rasterizer/gl_context.h"
 #include "rasterizer/pipeline.h"
 
 namespace plumb {
 
-// What a method or the path tracer made of one plane of one view.
-struct PlaneImage {
-    std::string view, plane, method;
-    Image image;
-    int path_tracer_samples = 0;
-    Timing timing;
-    int gbuffer_bytes_per_pixel = 0;
-};
-
 struct SceneRunControl {
     GlContext& context;
     const ReferenceCache& cache;
+    const CellStore& cells;
     ProgressLine& progress;
     const std::atomic<bool>* stop = nullptr;
-    int threads = 0;                                // of the path tracer; 0: all
-    double progress_from = 0.0, progress_to = 1.0;  // this scene's part of the whole run
+    int threads = 0;    // of the path tracer; 0: all
+    ProgressPart part;  // of the whole run, for this scene
 };
 
 class SceneRun {
@@ -40,7 +34,8 @@ public:
     SceneRun(const Experiment& experiment, const ExperimentScene& entry, const Scene& scene,
              const SceneRunControl& control);
 
-    // Renders and measures; appends rows, reference uses and failures to `results`. Returns early when stopped.
+    // Renders and measures all views; appends rows, reference uses and failures to `results`. Returns early when
+    // stopped.
     void run(RunResults& results);
 
     const std::vector<std::string>& views() const { return views_; }
@@ -52,11 +47,14 @@ private:
     void show(double fraction, const std::string& text);
     double measuring_progress(const std::string& plane, double done) const;
     View view_of(const std::string& name) const;
+    std::string cell_key(const std::string& view, const std::string& plane) const;
+    bool load_cell(const std::string& key);
+    // For the next run, unless the key is empty.
+    void keep_cell(const std::string& key, std::vector<PlaneImage> images);
     void render_truths(const std::string& view, RunResults& results);
-    ReferenceResult render_reference(const std::string& view, const ReferenceSettings& settings,
-                                     const std::string& truth, double fraction, RunResults& results);
     void render_methods(const std::string& plane, RunResults& results);
     void render_path_tracer_curve(const std::string& plane, RunResults& results);
+    void render_oracle(const std::string& view, RunResults& results);
     void measure(const PlaneImage& image, RunResults& results);
 
     const Experiment& experiment_;
@@ -64,9 +62,19 @@ private:
     const Scene& scene_;
     SceneRunControl control_;
     PathTracer tracer_;
+    ReferenceRenderer references_;
     std::vector<std::string> views_;
     std::map<std::string, ViewTruths> truths_;
+    std::map<std::string, std::vector<Region>> regions_;
     std::vector<PlaneImage> images_;
 };
+
+// All that decides the pixels and times of the methods' images of a view.
+std::string methods_key(const Experiment& experiment, const ExperimentScene& entry, const Scene& scene,
+                        const View& view, const GlInfo& gl);
+
+// The method and the sweep that a row of `method` belongs to.
+void describe_method(const Experiment& experiment, const ExperimentScene& entry, const std::string& method,
+                     ResultRow& row);
 
 }  // namespace plumb

@@ -1,0 +1,326 @@
+#include "experiments/path_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <limits>
+#include <map>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "experiments/method_timing.h"
+#include "experiments/path_pictures.h"
+#include "experiments/row_measurement.h"
+#include "experiments/settling.h"
+#include "experiments/statistics.h"
+#include "metrics/comparison.h"
+#include "metrics/error_series.h"
+#include "metrics/path_stability.h"
+
+namespace plumb {
+namespace {
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+
+ReferencedErrorSettings error_settings(const Experiment& experiment) {
+    ReferencedErrorSettings settings;
+    settings.noise_limit = experiment.reference.most_noise;
+    return settings;
+}
+
+PathStabilitySettings stability_settings(const Experiment& experiment) {
+    PathStabilitySettings settings;
+    settings.noise_limit = experiment.reference.most_noise;
+    return settings;
+}
+
+// Means over frames, NaN left out; the root and what follows from it are of the means.
+class MeanMeasures {
+public:
+    void add(const std::vector<std::pair<std::string, double>>& measures) {
+        if (names_.empty())
+            names_.resize(measures.size()), sums_.resize(measures.size()), counts_.resize(measures.size());
+        for (std::size_t i = 0; i < measures.size(); ++i) {
+            names_[i] = measures[i].first;
+            if (std::isnan(measures[i].second)) continue;
+            sums_[i] += measures[i].second;
+            ++counts_[i];
+        }
+    }
+
+    std::vector<std::pair<std::string, double>> means() const {
+        std::vector<std::pair<std::string, double>> result;
+        double mse = none;
+        for (std::size_t i = 0; i < names_.size(); ++i) {
+            const double mean = counts_[i] > 0 ? sums_[i] / counts_[i] : none;
+            if (names_[i] == "mse") mse = mean;
+            result.emplace_back(names_[i], names_[i] == "rmse" ? std::sqrt(mse) : mean);
+        }
+        return result;
+    }
+
+private:
+    std::vector<std::string> names_;
+    std::vector<double> sums_;
+    std::vector<int> counts_;
+};
+
+double mean_named(const std::vector<std::pair<std::string, double>>& measures, std::string_view name) {
+    const auto found = std::ranges::find(measures, name, &std::pair<std::string, double>::first);
+    return found == measures.end() ? none : found->second;
+}
+
+}  // namespace
+
+// What one method makes of one plane, frame after frame.
+struct PathRun::Series {
+    Series(const Experiment& experiment, std::string of_plane, std::string of_method)
+        : plane(std::move(of_plane)),
+          method(std::move(of_method)),
+          settings(error_settings(experiment)),
+          error(SeriesOf::frames, settings),
+          stability(plane, stability_settings(experiment)) {}
+
+    std::string plane, method;
+    ReferencedErrorSettings settings;
+    std::unique_ptr<Pipeline> pipeline;
+    int gbuffer_bytes_per_pixel = 0;
+    ErrorSeries error;
+    std::map<std::string, ErrorSeries> regions;
+    std::map<std::string, std::size_t> region_pixels;
+    PathStability stability;
+    MeanMeasures measures;
+    std::vector<FrameMeasure> frames;
+    std::vector<Image> images;
+    std::vector<Timing> timings;
+};
+
+PathRun::PathRun(const Experiment& experiment, const ExperimentScene& entry, const Scene& scene,
+                 const ExperimentPath& path, const SceneRunControl& control, std::filesystem::path folder)
+    : experiment_(experiment),
+      entry_(entry),
+      scene_(scene),
+      path_(path),
+      control_(control),
+      folder_(std::move(folder)),
+      references_(control.cache, control.progress, control.stop, control.threads),
+      scene_moves_(std::ranges::any_of(scene.instances, &Instance::moves)),
+      truths_(experiment.planes.size()) {
+    scene.path(path.path);  // throws for a name that is not there
+}
+
+PathRun::~PathRun() = default;
+
+Moment PathRun::at(int frame) const {
+    const double time = path_.start + frame / path_.frames_per_second;
+    Moment moment{View(scene_.path(path_.path).at(static_cast<float>(time)), experiment_.width, experiment_.height)};
+    if (scene_moves_) moment.time = time;
+    return moment;
+}
+
+std::string PathRun::cell_key(int frame) const {
+    return fmt::format("path {} from {:a} at {:a}, frame {} of {}; {}", path_.path, path_.start,
+                       path_.frames_per_second, frame, path_.frames,
+                       methods_key(experiment_, entry_, scene_, at(frame).view, control_.context.info()));
+}
+
+std::vector<std::vector<PlaneImage>> PathRun::load_cells() const {
+    std::vector<std::vector<PlaneImage>> cells;
+    for (int frame = 0; frame < path_.frames; ++frame) {
+        // Histories cannot be taken up in the middle: one frame that is missing, and all are rendered again.
+        std::optional<std::vector<PlaneImage>> cell = control_.cells.load(cell_key(frame));
+        if (!cell) return {};
+        cells.push_back(std::move(*cell));
+    }
+    return cells;
+}
+
+void PathRun::make_pipelines(RunResults& results) {
+    for (const std::unique_ptr<Series>& series : series_) {
+        Quantities quantities = experiment_.quantities;
+        quantities.planes = {series->plane};
+        quantities.ao_radius = entry_.ao_radius;
+        const Method method =
+            method_in_scene(*find_method(experiment_.methods, series->method), entry_, experiment_.file.string());
+        try {
+            series->pipeline = std::make_unique<Pipeline>(control_.context, scene_, method, quantities,
+                                                          experiment_.width, experiment_.height);
+            series->gbuffer_bytes_per_pixel = static_cast<int>(series->pipeline->gbuffer_bytes_per_pixel());
+        } catch (const std::exception& error) {
+            results.failures.push_back(
+                {fmt::format("{} / {} / {} / {}", entry_.scene, path_.path, series->plane, series->method),
+                 error.what()});
+        }
+    }
+    std::erase_if(series_, [](const std::unique_ptr<Series>& series) { return !series->pipeline; });
+}
+
+// The planes that are compared, with their halves, and the exact G-buffer.
+Frame PathRun::render_truth(int frame, RunResults& results) {
+    const Moment before = at(frame - 1), now = at(frame);
+    const TimeSpan span = now.time ? TimeSpan{*before.time, *now.time} : TimeSpan{};
+    // A scene that stands still needs one tree for all frames.
+    if (now.time || !tracer_) tracer_ = std::make_unique<PathTracer>(scene_, span);
+    ReferenceSettings settings = full_truth_settings(experiment_, entry_);
+    settings.samples = experiment_.reference.path_samples;
+    const double frames = path_.frames;
+    ReferenceResult reference = references_.render(
+        *tracer_, scene_, now.view, settings,
+        {entry_.scene, fmt::format("{}, frame {} of {}", path_.path, frame + 1, path_.frames), "full"},
+        control_.part.part(frame / frames, (frame + 1) / frames), results, span);
+    if (!reference.complete) return {};
+    reference_samples_ = frame == 0 ? reference.samples : std::min(reference_samples_, reference.samples);
+    Frame truth = std::move(reference.frame);
+    truth.facts["samples"] = fmt::format("{}", reference.samples);
+    Frame gbuffer = tracer_->gbuffer(
+        now.view, {.minimum_separation = entry_.minimum_separation, .previous_view = &before.view}, control_.threads);
+    for (const std::string& plane : gbuffer.plane_names()) truth.set(plane, std::move(gbuffer.plane(plane)));
+    return truth;
+}
+
+std::vector<PlaneImage> PathRun::render_methods(int frame, const Frame& truth, RunResults& results) {
+    std::vector<PlaneImage> images;
+    for (const std::unique_ptr<Series>& series : series_) {
+        if (!series->pipeline) continue;
+        try {
+            FrameRequest request{.now = at(frame), .next = at(frame + 1), .truth = &truth};
+            if (frame == 0) {
+                // The path begins with a history that has settled, as in the middle of a sequence.
+                const Method method = method_in_scene(*find_method(experiment_.methods, series->method), entry_,
+                                                      experiment_.file.string());
+                FrameRequest still = request;
+                still.next.reset();
+                for (int i = 1; i < frames_to_settle(method); ++i) series->pipeline->time_passes(still);
+            } else {
+                request.previous = at(frame - 1);
+            }
+            RasterResult raster = series->pipeline->render(request);
+            PlaneImage& image = images.emplace_back(
+                PlaneImage{path_.path, series->plane, series->method, std::move(raster.frame.plane(series->plane))});
+            image.gbuffer_bytes_per_pixel = series->gbuffer_bytes_per_pixel;
+            image.timing = {raster.milliseconds, raster.milliseconds, raster.milliseconds, 1,
+                            std::move(raster.timings)};
+        } catch (const std::exception& error) {
+            results.failures.push_back({fmt::format("{} / {} / {} / {}, frame {}", entry_.scene, path_.path,
+                                                    series->plane, series->method, frame + 1),
+                                        error.what()});
+            series->pipeline.reset();
+        }
+    }
+    return images;
+}
+
+void PathRun::add(const PlaneImage& image, int frame, const Frame& truth, const std::vector<Region>& regions) {
+    const auto found = std::ranges::find_if(series_, [&](const std::unique_ptr<Series>& series) {
+        return series->plane == image.plane && series->method == image.method;
+    });
+    Series& series = **found;
+    Frame test(image.image.width(), image.image.height());
+    test.set(image.plane, image.image);
+    ComparisonSettings settings;
+    settings.referenced = series.settings;
+    Frame reference(truth.width(), truth.height());
+    reference.set(image.plane, truth.plane(image.plane));
+    series.measures.add(compare_frames(test, reference, settings).planes.front().measures());
+
+    FrameMeasure measure{path_.start + frame / path_.frames_per_second, none, none};
+    if (truth.has("half_a." + image.plane)) {
+        if (const auto error = series.error.add(test, truth, image.plane, reference_samples_))
+            measure.rmse = std::sqrt(std::max(0.0, error->mse));
+        for (const Region& region : regions) {
+            if (region.pixels == 0) continue;
+            series.regions.try_emplace(region.name, SeriesOf::frames, series.settings)
+                .first->second.add(test, truth, image.plane, reference_samples_, &region.mask);
+            series.region_pixels[region.name] += region.pixels;
+        }
+    }
+    if (const std::optional<Flicker> flicker = series.stability.add(test, truth)) measure.flicker = flicker->rms;
+    series.frames.push_back(measure);
+    series.images.push_back(image.image);
+    series.timings.push_back(image.timing);
+    series.gbuffer_bytes_per_pixel = image.gbuffer_bytes_per_pixel;
+}
+
+void PathRun::run(RunResults& results) {
+    for (const std::string& plane : experiment_.planes) {
+        for (const Method& method : experiment_.methods)
+            series_.push_back(std::make_unique<Series>(experiment_, plane, method.name));
+    }
+    const std::vector<std::vector<PlaneImage>> kept = load_cells();
+    if (kept.empty()) make_pipelines(results);
+    for (int frame = 0; frame < path_.frames; ++frame) {
+        const Frame truth = render_truth(frame, results);
+        if (stopped()) return;
+        const std::vector<Region> regions = regions_of(truth);
+        const auto place = static_cast<std::size_t>(frame);
+        const std::vector<PlaneImage> images = kept.empty() ? render_methods(frame, truth, results) : kept[place];
+        if (kept.empty() && images.size() == experiment_.planes.size() * experiment_.methods.size())
+            control_.cells.save(cell_key(frame), images);
+        for (const PlaneImage& image : images) add(image, frame, truth, regions);
+        for (std::size_t plane = 0; plane < truths_.size(); ++plane)
+            truths_[plane].push_back(truth.plane(experiment_.planes[plane]));
+    }
+    // What failed on the way is on record, and has no row.
+    std::erase_if(series_, [&](const std::unique_ptr<Series>& series) {
+        return series->frames.size() != static_cast<std::size_t>(path_.frames);
+    });
+    write_rows(results);
+    write_pictures(results);
+}
+
+void PathRun::write_rows(RunResults& results) {
+    for (const std::unique_ptr<Series>& series : series_) {
+        ResultRow row;
+        row.scene = entry_.scene, row.path = path_.path, row.plane = series->plane, row.method = series->method;
+        const bool two_truths = has_limited_truth(series->plane) || series->plane == "total";
+        row.truth = two_truths ? "full" : "";
+        describe_method(experiment_, entry_, series->method, row);
+        row.reference_samples = reference_samples_;
+        row.gbuffer_bytes_per_pixel = series->gbuffer_bytes_per_pixel;
+        row.measures = series->measures.means();
+        row.mse = mean_named(row.measures, "mse"), row.psnr = mean_named(row.measures, "psnr");
+        row.ssim = mean_named(row.measures, "ssim"), row.data_range = mean_named(row.measures, "data_range");
+        row.mse_lower = row.mse_upper = none;
+        row.measured = true;
+        if (series->error.members() > 0) add_error(series->error.error(), row);
+        for (const auto& [region, error] : series->regions) {
+            if (error.members() == 0) continue;
+            const ReferencedError over_frames = error.error();
+            row.regions.push_back(
+                {region, series->region_pixels.at(region), over_frames.mse, over_frames.lower, over_frames.upper});
+        }
+        row.frames = series->frames;
+        const PathStabilityResult stability = series->stability.result();
+        row.stability =
+            Stability{stability.flicker.value,        stability.flicker.lower,       stability.flicker.upper,
+                      stability.method_warping.value, stability.truth_warping.value, stability.temporal_variance.value};
+        row.timing = median_timing(series->timings);
+        results.rows.push_back(std::move(row));
+    }
+}
+
+void PathRun::write_pictures(RunResults& results) {
+    for (std::size_t plane = 0; plane < experiment_.planes.size(); ++plane) {
+        const std::string& name = experiment_.planes[plane];
+        std::vector<PathImages> methods;
+        for (const std::unique_ptr<Series>& series : series_) {
+            if (series->plane != name) continue;
+            PathImages& images = methods.emplace_back(PathImages{series->method, {}, {}, {}});
+            for (const Image& image : series->images) images.frames.push_back(&image);
+            for (const FrameMeasure& frame : series->frames)
+                images.rmse.push_back(frame.rmse), images.flicker.push_back(frame.flicker);
+        }
+        if (methods.empty()) continue;
+        PathPictures subject;
+        subject.scene = entry_.scene, subject.path = path_.path, subject.plane = name;
+        subject.frames_per_second = path_.frames_per_second;
+        const bool two_truths = has_limited_truth(name) || name == "total";
+        subject.truth = two_truths ? "full" : "";
+        std::vector<const Image*> truths;
+        for (const Image& image : truths_[plane]) truths.push_back(&image);
+        results.path_pictures.push_back(write_path_pictures(std::move(subject), truths, methods, folder_));
+    }
+}
+
+}  // namespace plumb

@@ -1,0 +1,54 @@
+// One camera path of an experiment's scene: every frame rendered by the path tracer and, in turn, by every method as
+// it would in motion, with its history; the error over all frames, and how steady it is.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "experiments/scene_run.h"
+
+namespace plumb {
+
+class PathRun {
+public:
+    // Keeps references to all of them. The path's pictures go into `folder`/pictures.
+    PathRun(const Experiment& experiment, const ExperimentScene& entry, const Scene& scene, const ExperimentPath& path,
+            const SceneRunControl& control, std::filesystem::path folder);
+    ~PathRun();
+
+    // Appends a row per plane and method, pictures, reference uses and failures to `results`. Returns early, without
+    // rows, when stopped.
+    void run(RunResults& results);
+
+private:
+    struct Series;
+
+    bool stopped() const { return control_.stop && control_.stop->load(); }
+    Moment at(int frame) const;
+    std::string cell_key(int frame) const;
+    // All frames that an earlier run kept; empty unless it kept every one.
+    std::vector<std::vector<PlaneImage>> load_cells() const;
+    void make_pipelines(RunResults& results);
+    Frame render_truth(int frame, RunResults& results);
+    std::vector<PlaneImage> render_methods(int frame, const Frame& truth, RunResults& results);
+    void add(const PlaneImage& image, int frame, const Frame& truth, const std::vector<Region>& regions);
+    void write_rows(RunResults& results);
+    void write_pictures(RunResults& results);
+
+    const Experiment& experiment_;
+    const ExperimentScene& entry_;
+    const Scene& scene_;
+    const ExperimentPath& path_;
+    SceneRunControl control_;
+    std::filesystem::path folder_;
+    ReferenceRenderer references_;
+    bool scene_moves_ = false;
+    std::unique_ptr<PathTracer> tracer_;
+    std::vector<std::unique_ptr<Series>> series_;  // by plane, then by method
+    std::vector<std::vector<Image>> truths_;       // by plane, then by frame: for pictures
+    int reference_samples_ = 0;                    // the fewest of any frame
+};
+
+}  // namespace plumb
