@@ -1,7 +1,5 @@
-// `plumbline compare`: how far two images are apart.
+// `plumbline compare`: how far two images, or two folders of frames, are apart.
 #include <algorithm>
-#include <cctype>
-#include <cmath>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -15,115 +13,110 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/command.h"
+#include "experiments/error_maps.h"
 #include "experiments/exit_code.h"
-#include "experiments/gate.h"
-#include "experiments/terminal_table.h"
+#include "experiments/gate_options.h"
+#include "experiments/image_pairs.h"
+#include "experiments/sequence_comparison.h"
+#include "experiments/sequence_report.h"
 #include "frames/image_file.h"
-#include "frames/picture.h"
-#include "metrics/comparison.h"
-#include "metrics/error_image.h"
 
 namespace plumb {
 namespace {
 
-constexpr const char* examples = R"(Examples:
+constexpr const char* examples = R"help(Examples:
   plumbline compare ours.exr truth.exr
   plumbline compare ours.png theirs.png --data-range 1 --json
   plumbline compare ours.exr truth.exr --heat-map out/errors
+  plumbline compare ours.exr truth.exr --regions --fail-above rmse@silhouettes=0.05
   plumbline compare ours.exr truth.exr --fail-above rmse=0.01,p95=0.05 --fail-below psnr=35    a gate: exits with 1
+  plumbline compare ours/ truth/ --fail-above rmse=0.01,flicker=0.004
 The second image is the reference. Where it has half-buffers (as 'plumbline reference' writes them) the unbiased_* measures
-are free of its noise.)";
+are free of its noise, and of that of the first where that has half-buffers too. "(?)" marks errors that the noise is too
+near to.
+Of two folders the frames that share a name are compared. A gate then looks at all of them together: rmse is the root of
+the mean squared error of all frames, maximum the largest, others are means. Where the references have planes motion (to
+the frame before), position and depth there is also flicker, warping and temporal_variance.
+Where both have a plane depth their G-buffers are compared, layer by layer: hit_agreement, agreement, depth_error_*,
+normal_angle_* (degrees), albedo_error_* and motion_error_* (pixels), with * mean, median, p95, p99 or maximum.)help";
 
 struct Options {
     std::filesystem::path test, reference, heat_maps;
-    std::string fail_above, fail_below;
+    GateOptions gate;
     double data_range = 0.0, heat_map_scale = 0.0;
     std::optional<FlipRange> flip;
-    bool json = false;
+    bool regions = false, json = false;
 };
 
-std::string print_comparison(const FrameComparison& comparison) {
-    std::vector<TerminalTable::Column> columns = {{"measure"}};
-    for (const PlaneComparison& plane : comparison.planes)
-        columns.push_back({plane.plane, TerminalTable::Align::right});
-    TerminalTable table(columns);
-    for (const std::string& name : measure_names()) {
-        std::vector<std::string> cells = {name};
-        bool exists = false;
-        for (const PlaneComparison& plane : comparison.planes) {
-            const double value = plane.measure(name);
-            exists |= !std::isnan(value);
-            cells.push_back(std::isnan(value) ? "-" : fmt::format("{:.6g}", value));
-        }
-        if (exists) table.add_row(std::move(cells));
-    }
-    return table.print();
+SequenceSettings settings_of(const Options& options, const ImagePair& first) {
+    SequenceSettings settings;
+    settings.regions = options.regions;
+    if (options.data_range > 0.0) settings.comparison.data_range = options.data_range;
+    const bool both_displayed = is_displayed_name(first.test) && is_displayed_name(first.reference);
+    settings.comparison.flip = options.flip.value_or(both_displayed ? FlipRange::displayed : FlipRange::by_plane);
+    return settings;
 }
 
-nlohmann::ordered_json json_of(const Options& options, const FrameComparison& comparison,
-                               const std::vector<std::string>& failed) {
-    nlohmann::ordered_json json = {{"test", options.test.string()}, {"reference", options.reference.string()}};
-    json["planes"] = nlohmann::ordered_json::object();
-    for (const PlaneComparison& plane : comparison.planes) {
-        for (const auto& [name, value] : plane.measures()) {
-            auto& entry = json["planes"][plane.plane][name];
-            // JSON has no infinity; PSNR of equal images is one.
-            if (std::isfinite(value))
-                entry = value;
-            else if (std::isinf(value))
-                entry = value > 0 ? "inf" : "-inf";
+// One scale per plane for all frames: the largest 99th percentile.
+void write_heat_maps(const Options& options, const ImagePairs& images, const SequenceComparison& comparison) {
+    std::map<std::string, double> scales;
+    for (const MeasuredFrame& frame : comparison.frames()) {
+        for (const MeasuredThing& thing : frame.things) {
+            if (const double p99 = thing.measure("p99"); thing.region.empty() && p99 >= 0.0)
+                scales[thing.name] = std::max(scales[thing.name], p99);
         }
     }
-    json["only_in_test"] = comparison.only_in_test;
-    json["only_in_reference"] = comparison.only_in_reference;
-    json["breaches"] = failed;
-    return json;
-}
-
-void write_heat_maps(const Options& options, const FrameComparison& comparison, const Frame& test,
-                     const Frame& reference) {
-    for (const PlaneComparison& plane : comparison.planes) {
-        const Image error = mean_of_channels(absolute_error(test.plane(plane.plane), reference.plane(plane.plane)));
-        double scale = options.heat_map_scale;
-        if (scale <= 0.0) scale = value_percentile(error, 0.99);
-        if (!(scale > 0.0)) scale = 1.0;  // equal images: a black map
-        const auto file = options.heat_maps / fmt::format("{}.error.png", plane.plane);
-        write_png(file, apply_colour_map(error, ColourMap::inferno, 0.0f, static_cast<float>(scale)));
-        fmt::print(stderr, "{}: |difference| from 0 (black) to {:.4g} (yellow)\n", file.string(), scale);
+    for (auto& [plane, scale] : scales)
+        scale = options.heat_map_scale > 0.0 ? options.heat_map_scale : error_map_scale(scale);
+    for (const ImagePair& pair : images.pairs) {
+        const Frame test = read_frame(pair.test), reference = read_frame(pair.reference);
+        for (const auto& [plane, scale] : scales) {
+            if (!test.has(plane) || !reference.has(plane)) continue;
+            const std::string name =
+                images.pairs.size() == 1 ? plane : fmt::format("{}.{}", pair.test.stem().string(), plane);
+            write_error_map(options.heat_maps / fmt::format("{}.error.png", name), test.plane(plane),
+                            reference.plane(plane), scale);
+        }
+    }
+    for (const auto& [plane, scale] : scales) {
+        fmt::print(stderr, "{}: |difference| of {} from 0 (black) to {:.4g} (yellow)\n", options.heat_maps.string(),
+                   plane, scale);
     }
 }
 
-// Whether a file holds what a screen shows, not radiance.
-bool is_displayed(const std::filesystem::path& file) {
-    std::string extension = file.extension().string();
-    std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
-    return extension == ".png" || extension == ".jpg" || extension == ".jpeg" || extension == ".bmp" ||
-           extension == ".tga";
+void print_only_in(const std::filesystem::path& where, const std::vector<std::string>& names) {
+    if (!names.empty()) fmt::print("only in '{}': {}\n", where.string(), fmt::join(names, ", "));
 }
 
 int compare(const Options& options) {
-    std::vector<Limit> limits = parse_limits(options.fail_above, true);
-    for (const Limit& limit : parse_limits(options.fail_below, false)) limits.push_back(limit);
-    const Frame test = read_frame(options.test), reference = read_frame(options.reference);
-    ComparisonSettings settings;
-    if (options.data_range > 0.0) settings.data_range = options.data_range;
-    const bool both_displayed = is_displayed(options.test) && is_displayed(options.reference);
-    settings.flip = options.flip.value_or(both_displayed ? FlipRange::displayed : FlipRange::by_plane);
-    const FrameComparison comparison = compare_frames(test, reference, settings);
-    const std::vector<std::string> failed = breaches(comparison, limits);
+    const std::vector<Limit> limits = options.gate.limits();
+    const ImagePairs images = find_pairs(options.test, options.reference);
+    SequenceComparison comparison(settings_of(options, images.pairs.front()));
+    for (const ImagePair& pair : images.pairs)
+        comparison.add(pair.name, read_frame(pair.test), read_frame(pair.reference));
+    const std::vector<MeasuredThing> whole = comparison.whole();
+    const std::vector<std::string> failed = breaches(whole, limits);
+    const bool sequence = images.pairs.size() > 1;
 
     if (options.json) {
-        fmt::print("{}\n",
-                   json_of(options, comparison, failed).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+        nlohmann::ordered_json json = {{"test", options.test.string()}, {"reference", options.reference.string()}};
+        json.update(json_of(whole));
+        if (sequence) json["frames"] = json_of(comparison.frames());
+        json["only_in_test"] = comparison.only_in_test();
+        json["only_in_reference"] = comparison.only_in_reference();
+        json["frames_only_in_test"] = images.only_in_test;
+        json["frames_only_in_reference"] = images.only_in_reference;
+        json["breaches"] = failed;
+        fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
     } else {
-        fmt::print("{}", print_comparison(comparison));
-        if (!comparison.only_in_test.empty())
-            fmt::print("only in '{}': {}\n", options.test.string(), fmt::join(comparison.only_in_test, ", "));
-        if (!comparison.only_in_reference.empty()) {
-            fmt::print("only in '{}': {}\n", options.reference.string(), fmt::join(comparison.only_in_reference, ", "));
-        }
+        if (sequence) fmt::print("{}\nAll {} frames\n", print_frames(comparison.frames(), whole), images.pairs.size());
+        fmt::print("{}", print_measures(whole));
+        print_only_in(options.test, comparison.only_in_test());
+        print_only_in(options.reference, comparison.only_in_reference());
+        print_only_in(options.test, images.only_in_test);
+        print_only_in(options.reference, images.only_in_reference);
     }
-    if (!options.heat_maps.empty()) write_heat_maps(options, comparison, test, reference);
+    if (!options.heat_maps.empty()) write_heat_maps(options, images, comparison);
     for (const std::string& line : failed) fmt::print(stderr, "plumbline: {}\n", line);
     return failed.empty() ? exit_fine : exit_failed;
 }
@@ -131,15 +124,23 @@ int compare(const Options& options) {
 }  // namespace
 
 void add_compare_command(CLI::App& app, const CommonOptions&, Action& action) {
-    CLI::App* command = app.add_subcommand("compare", "Measure how far two images are apart")->group("Measure");
+    CLI::App* command =
+        app.add_subcommand("compare", "Measure how far two images, or folders of frames, are apart")->group("Measure");
     auto options = std::make_shared<Options>();
-    command->add_option("test", options->test, "Image to judge: EXR, PNG, HDR...")->required()->type_name("FILE");
-    command->add_option("reference", options->reference, "Image to judge it by")->required()->type_name("FILE");
-    command->add_flag("--json", options->json, "Print JSON instead of a table");
-    command->add_option("--heat-map", options->heat_maps, "Folder for one error map per plane")->type_name("FOLDER");
+    command->add_option("test", options->test, "Image to judge (EXR, PNG, HDR...), or a folder of them")
+        ->required()
+        ->type_name("FILE|FOLDER");
+    command->add_option("reference", options->reference, "What to judge it by")->required()->type_name("FILE|FOLDER");
+    command->add_flag("--json", options->json, "Print JSON instead of tables");
+    command->add_flag("--regions", options->regions,
+                      "Also over silhouettes, newly_seen, second_layer, border and rest; the reference needs planes "
+                      "depth and normal");
+    command
+        ->add_option("--heat-map", options->heat_maps, "Folder for one error map per plane, and per frame of a folder")
+        ->type_name("FOLDER");
     command
         ->add_option("--heat-map-scale", options->heat_map_scale,
-                     "Error that is shown brightest; the 99th percentile by default")
+                     "Error that is shown brightest; just above the 99th percentile by default")
         ->check(CLI::PositiveNumber);
     command->add_option("--data-range", options->data_range, "Peak of PSNR and range of SSIM; per plane by default")
         ->check(CLI::PositiveNumber);
@@ -154,10 +155,7 @@ void add_compare_command(CLI::App& app, const CommonOptions&, Action& action) {
                                                                              {"by-plane", FlipRange::by_plane},
                                                                              {"none", FlipRange::none}}))
         ->type_name("RANGE");
-    command->add_option("--fail-above", options->fail_above, "Exit with 1 where a measure is above: rmse=0.01,p95=0.05")
-        ->type_name("LIMITS");
-    command->add_option("--fail-below", options->fail_below, "Exit with 1 where a measure is below: psnr=35,ssim=0.95")
-        ->type_name("LIMITS");
+    options->gate.add_to(*command);
     command->footer(examples);
     command->callback([options, &action] { action = [options] { return compare(*options); }; });
 }

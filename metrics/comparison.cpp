@@ -1,6 +1,7 @@
 #include "metrics/comparison.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <initializer_list>
@@ -20,16 +21,6 @@ std::string_view last_part(std::string_view plane) {
     return dot == std::string_view::npos ? plane : plane.substr(dot + 1);
 }
 
-// 0 where the reference does not say.
-int samples_of(const Frame& reference) {
-    const auto fact = reference.facts.find("samples");
-    if (fact == reference.facts.end()) return 0;
-    const std::string& text = fact->second;
-    int samples = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), samples);
-    return error == std::errc() && end == text.data() + text.size() ? samples : 0;
-}
-
 FlipRange flip_range(FlipRange asked, std::string_view plane, const Image& reference) {
     if (asked != FlipRange::by_plane) return asked;
     const auto name = last_part(plane);
@@ -38,9 +29,7 @@ FlipRange flip_range(FlipRange asked, std::string_view plane, const Image& refer
     };
     if (is_one_of({"ao", "alpha", "albedo", "confidence"})) return FlipRange::displayed;
     const bool is_colour = reference.channels() == 1 || reference.channels() == 3;
-    const bool is_geometry =
-        is_one_of({"depth", "normal", "motion", "position", "camera_position", "displacement", "instance"});
-    return is_colour && !is_geometry ? FlipRange::radiance : FlipRange::none;
+    return is_colour && !is_geometry_plane(plane) ? FlipRange::radiance : FlipRange::none;
 }
 
 void add_flip(const Image& test, const Image& reference, FlipRange range, const Image* mask, PlaneComparison& result) {
@@ -76,6 +65,21 @@ PlaneComparison compare(const Image& test, const Image& reference, const Compari
 }
 
 }  // namespace
+
+bool is_geometry_plane(std::string_view plane) {
+    constexpr std::array<std::string_view, 8> names = {"depth",           "normal",       "motion",   "position",
+                                                       "camera_position", "displacement", "instance", "seen_before"};
+    return std::ranges::find(names, last_part(plane)) != names.end();
+}
+
+int samples_of(const Frame& reference) {
+    const auto fact = reference.facts.find("samples");
+    if (fact == reference.facts.end()) return 0;
+    const std::string& text = fact->second;
+    int samples = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), samples);
+    return error == std::errc() && end == text.data() + text.size() ? samples : 0;
+}
 
 double default_data_range(std::string_view plane, const Image& reference, const Image* mask) {
     const auto name = last_part(plane);

@@ -36,6 +36,12 @@ struct ComparisonSettings {
 // is not positive, 1 where no value is. Callers state the range beside every PSNR and SSIM.
 double default_data_range(std::string_view plane, const Image& reference, const Image* mask = nullptr);
 
+// Whether a plane says where things are, not how they look: depth, normal, motion... of any layer.
+bool is_geometry_plane(std::string_view plane);
+
+// Samples per pixel of a reference, by its fact "samples"; 0 where it does not say.
+int samples_of(const Frame& reference);
+
 struct PlaneComparison {
     std::string plane;
     PixelErrors errors;
