@@ -1,9 +1,12 @@
 #include "experiments/summary.h"
 
 #include <algorithm>
+#include <climits>
 #include <cmath>
+#include <compare>
 #include <map>
 #include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -13,7 +16,15 @@
 namespace plumb {
 namespace {
 
-using Subject = std::pair<std::string, std::string>;  // plane, truth's kind
+// What sentences are about.
+struct Subject {
+    std::string plane, truth;  // the truth's kind
+    bool paths = false;        // camera paths, or still views
+    auto operator<=>(const Subject&) const = default;
+};
+
+// Rows by place (scene and view or path), then by method.
+using Cells = std::map<std::pair<std::string, std::string>, std::map<std::string, const ResultRow*>>;
 
 // "full" and "within 0.3 m", "within 1 m"...: the limit differs from scene to scene, the question does not.
 std::string truth_kind(const std::string& truth) {
@@ -54,36 +65,126 @@ std::string verdict(const RatioSummary& error, const RatioSummary& time, bool be
     return "The interval includes 1: these views do not show that it changes the error.";
 }
 
+std::string name_of(const Subject& subject) {
+    std::string name = subject.plane;
+    if (subject.truth == "full")
+        name += " against the full truth";
+    else if (!subject.truth.empty())
+        name += fmt::format(" against the truth {}", subject.truth);
+    if (subject.paths) name += ", along camera paths";
+    return name;
+}
+
+std::string count_text(int count, const Subject& subject) {
+    return fmt::format("{} {}{}", count, subject.paths ? "path" : "view", count == 1 ? "" : "s");
+}
+
+bool comparable(const ResultRow& row, const ResultRow& base) {
+    return row.measured && base.measured && row.rmse() > 0.0 && base.rmse() > 0.0;
+}
+
+// One method against the baseline.
+std::string compare(const Subject& subject, const Cells& cells, const std::string& method,
+                    const std::string& baseline) {
+    std::vector<double> errors, times, flickers;
+    int refused = 0;
+    for (const auto& [place, rows] : cells) {
+        if (!rows.contains(method) || !rows.contains(baseline)) continue;
+        const ResultRow &row = *rows.at(method), &base = *rows.at(baseline);
+        if (base.timing.median > 0.0 && row.timing.median > 0.0)
+            times.push_back(row.timing.median / base.timing.median);
+        if (row.stability && base.stability && row.stability->flicker > 0.0 && base.stability->flicker > 0.0)
+            flickers.push_back(row.stability->flicker / base.stability->flicker);
+        if (comparable(row, base))
+            errors.push_back(row.rmse() / base.rmse());
+        else
+            ++refused;
+    }
+    const std::string name = name_of(subject);
+    if (errors.empty() || times.empty()) {
+        return fmt::format("{}: no {} allows a statement about {} ({} refused).", name, subject.paths ? "path" : "view",
+                           method, refused);
+    }
+    const RatioSummary error = summarise_ratios(errors), time = summarise_ratios(times);
+    std::string text = fmt::format("{}: {} has {} the RMSE", name, method, ratio_text(error));
+    if (!flickers.empty()) text += fmt::format(" and {} the flicker", ratio_text(summarise_ratios(flickers)));
+    return text + fmt::format(" of {} over {}, lower in {} of them{}, and takes {} its time. {}", baseline,
+                              count_text(error.count, subject), error.below_one,
+                              refused > 0 ? fmt::format(" ({} more refused)", refused) : "", ratio_text(time),
+                              verdict(error, time, error.upper<1.0, error.lower> 1.0));
+}
+
+// What each layer could bring to any method: the oracle with more layers against the oracle with fewer.
+std::vector<std::string> compare_oracles(const Subject& subject, const Cells& cells) {
+    std::map<int, std::string> names;  // all in view comes last
+    for (const auto& [place, rows] : cells) {
+        for (const auto& [name, row] : rows) {
+            if (row->oracle_layers >= 0) names[row->oracle_layers == 0 ? INT_MAX : row->oracle_layers] = name;
+        }
+    }
+    std::vector<std::string> sentences;
+    const std::string* before = nullptr;
+    for (const auto& [layers, name] : names) {
+        const std::string* fewer = std::exchange(before, &name);
+        if (!fewer) continue;
+        std::vector<double> ratios;
+        for (const auto& [place, rows] : cells) {
+            if (!rows.contains(name) || !rows.contains(*fewer)) continue;
+            if (comparable(*rows.at(name), *rows.at(*fewer)))
+                ratios.push_back(rows.at(name)->rmse() / rows.at(*fewer)->rmse());
+        }
+        if (ratios.empty()) {
+            sentences.push_back(fmt::format("In principle, {}: no view allows a statement about '{}' against '{}'.",
+                                            name_of(subject), name, *fewer));
+            continue;
+        }
+        const RatioSummary ratio = summarise_ratios(ratios);
+        sentences.push_back(fmt::format("In principle, {}: the best possible RMSE of '{}' is {} that of '{}' over {}.",
+                                        name_of(subject), name, ratio_text(ratio), *fewer,
+                                        count_text(ratio.count, subject)));
+    }
+    return sentences;
+}
+
 }  // namespace
 
 std::string print_results_table(const std::vector<ResultRow>& rows) {
     using Align = TerminalTable::Align;
-    TerminalTable table({{"scene"},
-                         {"view"},
-                         {"plane"},
-                         {"truth"},
-                         {"method"},
-                         {"RMSE [95 %]", Align::right},
-                         {"PSNR", Align::right},
-                         {"SSIM", Align::right},
-                         {"ms [quartiles]", Align::right},
-                         {"G-buffer B/px", Align::right}});
+    const bool has_paths = std::ranges::any_of(rows, [](const ResultRow& row) { return row.stability.has_value(); });
+    std::vector<TerminalTable::Column> columns{{"scene"},
+                                               {has_paths ? "view or path" : "view"},
+                                               {"plane"},
+                                               {"truth"},
+                                               {"method"},
+                                               {"RMSE [95 %]", Align::right},
+                                               {"PSNR", Align::right},
+                                               {"SSIM", Align::right},
+                                               {"ms [quartiles]", Align::right},
+                                               {"G-buffer B/px", Align::right}};
+    if (has_paths) columns.push_back({"flicker [95 %]", Align::right});
+    TerminalTable table(columns);
     const ResultRow* before = nullptr;
     for (const ResultRow& row : rows) {
-        const auto subject = [](const ResultRow& r) { return std::tie(r.scene, r.plane, r.truth); };
+        const auto subject = [](const ResultRow& r) { return std::tie(r.scene, r.path, r.plane, r.truth); };
         if (before && subject(*before) != subject(row)) table.add_rule();
         before = &row;
-        std::vector<std::string> cells = {row.scene, row.view, row.plane, row.truth, row.method};
+        std::vector<std::string> cells = {row.scene, row.place(), row.plane, row.truth, row.method};
         if (row.measured) {
             cells.insert(cells.end(), {with_interval(row.rmse(), row.rmse_lower(), row.rmse_upper()),
                                        optional_number(row.psnr, "{:.1f}"), optional_number(row.ssim, "{:.3f}")});
         } else {
             cells.insert(cells.end(), {"refused (1)", "-", "-"});
         }
-        cells.push_back(row.timing.repetitions > 1
+        cells.push_back(row.oracle_layers >= 0 ? "-"
+                        : row.timing.repetitions > 1
                             ? with_interval(row.timing.median, row.timing.lower_quartile, row.timing.upper_quartile)
                             : short_number(row.timing.median));
         cells.push_back(row.gbuffer_bytes_per_pixel > 0 ? fmt::format("{}", row.gbuffer_bytes_per_pixel) : "-");
+        if (has_paths) {
+            cells.push_back(row.stability ? with_interval(row.stability->flicker, row.stability->flicker_lower,
+                                                          row.stability->flicker_upper)
+                                          : "");
+        }
         table.add_row(std::move(cells));
     }
     std::string text = table.print();
@@ -92,60 +193,32 @@ std::string print_results_table(const std::vector<ResultRow>& rows) {
         if (row.measured) continue;
         if (first) text += "\n(1) the truth is too noisy for these; nothing is claimed about them:\n";
         first = false;
-        text += fmt::format("    {} / {} / {}{} / {}: {}\n", row.scene, row.view, row.plane,
+        text += fmt::format("    {} / {} / {}{} / {}: {}\n", row.scene, row.place(), row.plane,
                             row.truth.empty() ? "" : fmt::format(" ({})", row.truth), row.method, row.refusal);
     }
     return text;
 }
 
 std::vector<std::string> summarise(const RunResults& results) {
-    // Rows of methods by subject, then by place, then by method.
-    std::map<Subject, std::map<std::pair<std::string, std::string>, std::map<std::string, const ResultRow*>>> cells;
+    std::map<Subject, Cells> cells;
     std::vector<Subject> order;
     for (const ResultRow& row : results.rows) {
         if (row.path_tracer_samples > 0) continue;
-        const Subject subject{row.plane, truth_kind(row.truth)};
+        const Subject subject{row.plane, truth_kind(row.truth), !row.path.empty()};
         if (std::ranges::find(order, subject) == order.end()) order.push_back(subject);
-        cells[subject][{row.scene, row.view}][row.method] = &row;
+        cells[subject][{row.scene, row.place()}][row.method] = &row;
     }
     std::ranges::stable_sort(order, {}, [&](const Subject& subject) {
-        return std::ranges::find(results.experiment.planes, subject.first) - results.experiment.planes.begin();
+        return std::ranges::find(results.experiment.planes, subject.plane) - results.experiment.planes.begin();
     });
 
     std::vector<std::string> sentences;
     const std::string& baseline = results.experiment.baseline;
     for (const Subject& subject : order) {
         for (const Method& method : results.experiment.methods) {
-            if (method.name == baseline) continue;
-            std::vector<double> errors, times;
-            int refused = 0;
-            for (const auto& [place, rows] : cells[subject]) {
-                if (!rows.contains(method.name) || !rows.contains(baseline)) continue;
-                const ResultRow &row = *rows.at(method.name), &base = *rows.at(baseline);
-                if (base.timing.median > 0.0 && row.timing.median > 0.0)
-                    times.push_back(row.timing.median / base.timing.median);
-                if (!row.measured || !base.measured || !(row.rmse() > 0.0) || !(base.rmse() > 0.0)) {
-                    ++refused;
-                } else {
-                    errors.push_back(row.rmse() / base.rmse());
-                }
-            }
-            const std::string name = subject.second.empty() ? subject.first
-                                     : subject.second == "full"
-                                         ? fmt::format("{} against the full truth", subject.first)
-                                         : fmt::format("{} against the truth {}", subject.first, subject.second);
-            if (errors.empty()) {
-                sentences.push_back(
-                    fmt::format("{}: no view allows a statement about {} ({} refused).", name, method.name, refused));
-                continue;
-            }
-            const RatioSummary error = summarise_ratios(errors), time = summarise_ratios(times);
-            sentences.push_back(fmt::format(
-                "{}: {} has {} the RMSE of {} over {} view{}, lower in {} of them{}, and takes {} its time. {}", name,
-                method.name, ratio_text(error), baseline, error.count, error.count == 1 ? "" : "s", error.below_one,
-                refused > 0 ? fmt::format(" ({} more refused)", refused) : "", ratio_text(time),
-                verdict(error, time, error.upper<1.0, error.lower> 1.0)));
+            if (method.name != baseline) sentences.push_back(compare(subject, cells[subject], method.name, baseline));
         }
+        std::ranges::move(compare_oracles(subject, cells[subject]), std::back_inserter(sentences));
     }
     return sentences;
 }
