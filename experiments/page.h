@@ -1,4 +1,7 @@
-// A run's results as one page that needs neither network nor server: table, chart, pictures, error maps.
+// A run's results as one page that needs neither network nor server: table, charts, pictures, camera paths.
+//
+// page/page.html is its frame; the files beside it are its style and its script, one concept each. All of them, the
+// data (page_data.h) and every picture become part of the one file.
 #pragma once
 
 #include <filesystem>

@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "frames/picture.h"
-#include "tests/experiments/sample_results.h"
+#include "frames/image_error.h"
+#include "tests/experiments/page_sample.h"
 #include "tests/experiments/temporary_folder.h"
 
 namespace plumb {
@@ -30,18 +30,27 @@ TEST(Page, ContainsTheResultsAndNothingFromOutside) {
         << "left-over or network";
 }
 
-TEST(Page, ContainsEachPictureOnce) {
+TEST(Page, ContainsEachPlaneOnce) {
     const TemporaryFolder folder;
-    write_png(folder.path / "pictures/a.png", Image(2, 2, 3, 0.5f));
     RunResults results = sample_results();
-    PictureSet set;
-    set.scene = "cornell", set.view = "front", set.plane = "ao";
-    set.images = {{"truth", "truth", "pictures/a.png", ""}, {"one", "method", "pictures/a.png", ""}};
-    results.pictures = {set};
+    PictureSet other = sample_pictures(folder.path);
+    other.truth = "within 1 m";  // another truth for the same methods
+    results.pictures = {sample_pictures(folder.path), other};
     const std::string page = print_page(results, folder.path);
-    const auto first = page.find("data:image/png;base64,iVBORw0KGgo");
-    ASSERT_NE(first, std::string::npos);
-    EXPECT_EQ(page.find("data:image/png;base64,iVBORw0KGgo", first + 1), std::string::npos);
+    EXPECT_THAT(page,
+                AllOf(HasSubstr("id=\"values-0\""), HasSubstr("id=\"values-2\""), Not(HasSubstr("id=\"values-3\""))));
+}
+
+TEST(Page, NamesThePictureThatIsMissing) {
+    const TemporaryFolder folder;
+    RunResults results = sample_results();
+    results.pictures = {sample_pictures(folder.path)};
+    std::filesystem::remove(folder.path / "pictures/front.one.plane");
+    EXPECT_THAT([&] { print_page(results, folder.path); },
+                testing::ThrowsMessage<ImageError>(HasSubstr("front.one.plane")));
+    results.pictures[0].images[0].values = "";
+    EXPECT_THAT([&] { print_page(results, folder.path); },
+                testing::ThrowsMessage<ImageError>(HasSubstr("'pictures/front.truth.png' has no packed plane")));
 }
 
 }  // namespace
