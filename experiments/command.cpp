@@ -28,6 +28,7 @@ constexpr const char* examples = R"(Examples:
   plumbline render cornell --method two_layers            one view in OpenGL, with the time of each pass
   plumbline reference cornell --samples 256               the same view, path traced
   plumbline compare a.exr b.exr --fail-above rmse=0.01    two images, and a gate for scripts
+  plumbline judge frames/ --scene clutter --path slide    your own engine's frames against the truth
   plumbline run experiments/one_vs_two_layers.toml        a whole experiment: table, files, page
   plumbline reproduce --list                              figures and claims of the literature, made again
   plumbline check experiments/ci.toml                     the same held against limits: a gate for CI
@@ -99,6 +100,7 @@ int run_command_line(int argc, const char* const* argv) {
     add_render_command(app, common, action);
     add_reference_command(app, common, action);
     add_compare_command(app, common, action);
+    add_judge_command(app, common, action);
     add_run_command(app, common, action);
     add_reproduce_command(app, common, action);
     add_check_command(app, common, action);

@@ -26,6 +26,7 @@ void add_scenes_command(CLI::App& app, const CommonOptions& common, Action& acti
 void add_render_command(CLI::App& app, const CommonOptions& common, Action& action);
 void add_reference_command(CLI::App& app, const CommonOptions& common, Action& action);
 void add_compare_command(CLI::App& app, const CommonOptions& common, Action& action);
+void add_judge_command(CLI::App& app, const CommonOptions& common, Action& action);
 void add_check_command(CLI::App& app, const CommonOptions& common, Action& action);
 void add_run_command(CLI::App& app, const CommonOptions& common, Action& action);
 void add_reproduce_command(CLI::App& app, const CommonOptions& common, Action& action);

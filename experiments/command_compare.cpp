@@ -1,5 +1,4 @@
 // `plumbline compare`: how far two images, or two folders of frames, are apart.
-#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -57,17 +56,8 @@ SequenceSettings settings_of(const Options& options, const ImagePair& first) {
     return settings;
 }
 
-// One scale per plane for all frames: the largest 99th percentile.
 void write_heat_maps(const Options& options, const ImagePairs& images, const SequenceComparison& comparison) {
-    std::map<std::string, double> scales;
-    for (const MeasuredFrame& frame : comparison.frames()) {
-        for (const MeasuredThing& thing : frame.things) {
-            if (const double p99 = thing.measure("p99"); thing.region.empty() && p99 >= 0.0)
-                scales[thing.name] = std::max(scales[thing.name], p99);
-        }
-    }
-    for (auto& [plane, scale] : scales)
-        scale = options.heat_map_scale > 0.0 ? options.heat_map_scale : error_map_scale(scale);
+    const auto scales = error_map_scales(comparison.frames(), options.heat_map_scale);
     for (const ImagePair& pair : images.pairs) {
         const Frame test = read_frame(pair.test), reference = read_frame(pair.reference);
         for (const auto& [plane, scale] : scales) {
@@ -78,10 +68,7 @@ void write_heat_maps(const Options& options, const ImagePairs& images, const Seq
                             reference.plane(plane), scale);
         }
     }
-    for (const auto& [plane, scale] : scales) {
-        fmt::print(stderr, "{}: |difference| of {} from 0 (black) to {:.4g} (yellow)\n", options.heat_maps.string(),
-                   plane, scale);
-    }
+    fmt::print(stderr, "{}\n{}", options.heat_maps.string(), error_map_legend(scales));
 }
 
 void print_only_in(const std::filesystem::path& where, const std::vector<std::string>& names) {

@@ -2,8 +2,11 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
+#include <vector>
 
+#include "experiments/measured_thing.h"
 #include "frames/image.h"
 
 namespace plumb {
@@ -12,7 +15,11 @@ namespace plumb {
 // ImageError.
 void write_error_map(const std::filesystem::path& file, const Image& test, const Image& reference, double scale);
 
-// A scale for what is measured: just above `error` (a 99th percentile, say), or 1 where nothing differs.
-double error_map_scale(double error);
+// The error that is shown brightest, for each plane alike in all frames: `fixed` where that is above 0, else just above
+// the largest 99th percentile of any frame, or 1 where nothing differs.
+std::map<std::string, double> error_map_scales(const std::vector<MeasuredFrame>& frames, double fixed);
+
+// "total: |difference| from 0 (black) to 0.2 (yellow)", one line per plane.
+std::string error_map_legend(const std::map<std::string, double>& scales);
 
 }  // namespace plumb

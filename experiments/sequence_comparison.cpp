@@ -161,6 +161,12 @@ void SequenceComparison::add_stability(const Frame& test, const Frame& reference
                                                  {"flicker_noise", flicker->noise}});
 }
 
+std::optional<ReferencedError> SequenceComparison::error_of(const std::string& plane) const {
+    const auto found = errors_.find(plane);
+    if (found == errors_.end() || found->second.members() == 0) return std::nullopt;
+    return found->second.error();
+}
+
 std::vector<MeasuredThing> SequenceComparison::whole() const {
     if (frames_.size() == 1) {
         std::vector<MeasuredThing> things = frames_.front().things;

@@ -42,6 +42,8 @@ public:
     const std::vector<MeasuredFrame>& frames() const { return frames_; }
     // Over all frames: whole images first, in order of the planes, then G-buffers, then regions.
     std::vector<MeasuredThing> whole() const;
+    // Of a plane over all frames; nothing where the reference has no half-buffers of it.
+    std::optional<ReferencedError> error_of(const std::string& plane) const;
     // Planes that only one side of the first frame has.
     const std::vector<std::string>& only_in_test() const { return only_in_test_; }
     const std::vector<std::string>& only_in_reference() const { return only_in_reference_; }

@@ -56,6 +56,10 @@ void ViewOptions::add_to(CLI::App& command, const std::vector<std::string>& defa
         ->check(CLI::Range(0.0, 1.0))
         ->capture_default_str()
         ->group(pictures);
+    add_quantities_to(command);
+}
+
+void ViewOptions::add_quantities_to(CLI::App& command) {
     const std::string group = "Quantities";
     command.add_option("--ao-radius", quantities.ao_radius, "Reach of ambient visibility, metres")
         ->check(CLI::PositiveNumber)

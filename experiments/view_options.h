@@ -32,6 +32,8 @@ struct ViewOptions {
     float bloom = 0.0f;
 
     void add_to(CLI::App& command, const std::vector<std::string>& default_planes);
+    // What `planes` are of: radii, falloffs, bounces. Part of add_to().
+    void add_quantities_to(CLI::App& command);
     Quantities read_quantities() const;
     // The scene at `time`. Throws SceneError.
     Scene load(const SceneFinder& finder) const;
