@@ -18,6 +18,9 @@ const markers = ["circle", "rect", "triangle", "rectRot", "star", "cross"];
 const pathTracerColour = "#888888";
 const cycled = (list, index) => list[index % list.length];
 
+// A narrow screen, where pictures stand below each other and few of them are enough to begin with.
+const isNarrow = () => matchMedia("(max-width: 50rem)").matches;
+
 const byId = (id) => document.getElementById(id);
 
 // element("p", { className: "note", ariaLabel: "..." }, "text", child...)
@@ -34,7 +37,7 @@ const isNumber = (value) => typeof value === "number" && Number.isFinite(value);
 // Three significant digits, as everywhere on the page.
 function short(value) {
   if (value === null || value === undefined) return "";
-  if (!Number.isFinite(value)) return String(value);
+  if (!Number.isFinite(value) || value === 0) return String(value);
   if (Math.abs(value) >= 1000 && Math.abs(value) < 1e6) return value.toFixed(0);
   return value.toPrecision(3).replace(/e([+-])0*(\d)/, "e$1$2");
 }

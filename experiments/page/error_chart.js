@@ -30,6 +30,15 @@ function paretoFront(points) {
   return front;
 }
 
+// A logarithmic axis over just the values, labelled at 1, 2 and 5 times powers of ten.
+function logarithmicAxis(text, values) {
+  const ink = styleOf("--ink"), labelled = (value) => [1, 2, 5].includes(Math.round(value / 10 ** Math.floor(Math.log10(value) + 1e-9)));
+  return { type: "logarithmic", title: { display: true, text, color: ink }, grid: { color: styleOf("--line") },
+    min: Math.min(...values) / 1.25, max: Math.max(...values) * 1.25,
+    ticks: { color: ink, autoSkip: true, callback: (value) => short(value) },
+    afterBuildTicks: (axis) => { axis.ticks = axis.ticks.filter(({ value }) => labelled(value) && value >= axis.min && value <= axis.max); } };
+}
+
 // Whiskers of the intervals, across points of this chart.
 const whiskers = {
   id: "whiskers",
@@ -77,14 +86,16 @@ function drawErrorChart() {
     lower: errors.get(measure.value)(row).lower, upper: errors.get(measure.value)(row).upper });
 
   // One point per method: geometric means over the views in which each of them was measured.
-  function meanPoints(points) {
+  function meanPoints(all_points) {
+    // Frames of a path are no further views; paths alone are taken together (flicker).
+    const views = all_points.filter(({ row }) => !row.is_path), points = views.length > 0 ? views : all_points;
     const methods = distinct(points.map(({ row }) => row.method));
     const complete = distinct(points.map(({ row }) => placeOf(row))).filter((where) =>
       methods.every((method) => points.some(({ row }) => row.method === method && placeOf(row) === where)));
     const geometric = (values) => Math.exp(values.reduce((sum, value) => sum + Math.log(value), 0) / values.length);
     return complete.length === 0 ? [] : methods.map((method) => {
       const of = points.filter(({ row }) => row.method === method && complete.includes(placeOf(row)));
-      const row = { ...of[0].row, scene: "geometric mean", place: `${complete.length} views`, milliseconds_lower: null, milliseconds_upper: null };
+      const row = { ...of[0].row, scene: "geometric mean", place: `${complete.length} ${views.length > 0 ? "views" : "paths"}`, milliseconds_lower: null, milliseconds_upper: null };
       return { x: row.kind === "oracle" ? null : geometric(of.map(({ x }) => x)), y: geometric(of.map(({ y }) => y)), row };
     });
   }
@@ -113,13 +124,13 @@ function drawErrorChart() {
     }
     const methods = points.filter(({ row }) => row.kind === "method"), times = points.filter(({ x }) => x > 0).map(({ x }) => x);
     if (place.value !== all && methods.length > 1) {
-      sets.push({ label: "Pareto front of the methods", data: paretoFront(methods), showLine: true, stepped: true, bare: true, pointRadius: 0,
+      sets.push({ label: "Pareto front of the methods", data: paretoFront(methods), showLine: true, stepped: true, bare: true, pointRadius: 0, pointStyle: "line",
         pointHitRadius: 0, borderColor: styleOf("--ink"), backgroundColor: styleOf("--ink"), borderWidth: 1, borderDash: [2, 3] });
     }
     if (place.value !== all) {
       for (const { y, row } of points.filter((point) => point.row.kind === "oracle")) {
         sets.push({ label: row.method, data: [Math.min(...times), Math.max(...times)].map((x) => ({ x, y, row })), showLine: true, bare: true,
-          pointRadius: 0, borderColor: styleOf("--faint"), backgroundColor: styleOf("--faint"), borderWidth: 1.5, borderDash: [8, 4] });
+          pointRadius: 0, pointStyle: "line", borderColor: styleOf("--faint"), backgroundColor: styleOf("--faint"), borderWidth: 1.5, borderDash: [8, 4] });
       }
     }
     return sets;
@@ -131,12 +142,12 @@ function drawErrorChart() {
   }
 
   function redraw() {
-    const points = pointsShown(), ink = styleOf("--ink"), line = styleOf("--line");
-    const axis = (text) => ({ type: "logarithmic", title: { display: true, text, color: ink }, grid: { color: line },
-      ticks: { color: ink, maxTicksLimit: 12, callback: (value) => short(value) } });
+    const points = pointsShown(), ink = styleOf("--ink");
+    const times = points.flatMap(({ x, row }) => [x, row.milliseconds_lower, row.milliseconds_upper]).filter((value) => value > 0);
+    const values = points.flatMap(({ y, lower, upper }) => [y, lower, upper]).filter((value) => value > 0);
     const options = {
       animation: false, maintainAspectRatio: false, responsive: true,
-      scales: { x: axis("milliseconds per frame"), y: axis(measure.value) },
+      scales: { x: logarithmicAxis("milliseconds per frame", times), y: logarithmicAxis(measure.value, values) },
       plugins: {
         legend: { labels: { color: ink, usePointStyle: true,
           filter: (item, { datasets: sets }) => sets.findIndex((set) => set.label === item.text) === item.datasetIndex },

@@ -177,8 +177,10 @@ class PaneGroup {
       context.clip();
       context.drawImage(under, left, top, width * scale, height * scale);
       context.restore();
-      context.fillStyle = "#ffffff";
-      context.fillRect(edge - ratio, 0, 2 * ratio, seen.height);
+      for (const [colour, half] of [["#000000", 2 * ratio], ["#ffffff", ratio]]) {
+        context.fillStyle = colour;
+        context.fillRect(edge - half, 0, 2 * half, seen.height);
+      }
     }
     if (this.probe) markPixel(context, left + this.probe.x * scale, top + this.probe.y * scale, scale, ratio);
   }

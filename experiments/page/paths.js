@@ -55,7 +55,7 @@ function drawPaths() {
     stop();
     state.path = data.paths.find((path) => nameOf(path) === name.value && subjectOf(path) === subject.value);
     state.frames = state.path.strips.map(() => null);
-    const methods = distinct(state.path.strips.filter((strip) => strip.kind === "method").map((strip) => strip.label)).slice(0, 2);
+    const methods = distinct(state.path.strips.filter((strip) => strip.kind === "method").map((strip) => strip.label)).slice(0, isNarrow() ? 1 : 2);
     state.shown = new Set(state.path.strips.filter((strip) => strip.kind === "truth" || methods.includes(strip.label)));
     scrub.box.max = lengthOf() - 1;
     byId("path-note").textContent = `${state.path.exposure_note ? `${state.path.exposure_note}; ` : ""}error maps: |difference| averaged over channels, from 0 (dark) to ${short(state.path.error_scale)} and more (bright). Frames are JPEG pictures to look at; the figures come from the float frames.`;

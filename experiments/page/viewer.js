@@ -11,7 +11,7 @@ function drawViewer() {
     return;
   }
   const layouts = ["side by side", "by turns", "slider"];
-  const state = { set: null, items: [], layout: layouts[0], shown: new Set(), turn: 0, left: 0, right: 1, request: 0 };
+  const state = { set: null, items: [], layout: isNarrow() ? "slider" : layouts[0], shown: new Set(), turn: 0, left: 0, right: 1, request: 0 };
 
   // ---- controls ----
   const choice = byId("picture-controls"), looks = byId("picture-looks");
@@ -19,6 +19,7 @@ function drawViewer() {
   const view = select(choice, "View", [], viewChanged);
   const subject = select(choice, "Plane", [], setChanged);
   const layout = select(choice, "Layout", layouts, () => { state.layout = layout.value; arrange(); });
+  layout.value = state.layout;
   const exposure = slider(looks, "Exposure", { min: -8, max: 8, step: 0.25, value: 0,
     say: (stops) => `${stops >= 0 ? "+" : "\u2212"}${Math.abs(stops).toFixed(2)} stops` }, oncePerFrame(recolour));
   const errorKind = select(looks, "Error", Object.keys(errorKinds), recolour);
@@ -77,7 +78,8 @@ function drawViewer() {
     section.removeAttribute("aria-busy");
     recolour();
     arrange();
-    if (group.probe) group.setProbe(group.probe.x, group.probe.y);
+    const probe = group.probe ?? { x: planes[0].width >> 1, y: planes[0].height >> 1 };
+    group.setProbe(probe.x, probe.y);
   }
 
   // ---- colours ----
@@ -191,9 +193,13 @@ function drawViewer() {
       return element("tr", {}, element("th", { textContent: item.title, scope: "row" }),
         ...values.map((value) => element("td", { className: "number", textContent: short(value) })));
     });
+    const channels = state.items[0].plane.channels;
+    const heads = state.set.display === "radiance" && channels === 3 ? ["red", "green", "blue"] : Array.from({ length: channels }, (_, i) => (channels === 1 ? "value" : `channel ${i}`));
+    byId("picture-values").tHead.replaceChildren(element("tr", {}, element("th", { textContent: "picture", scope: "col" }),
+      ...heads.map((head) => element("th", { textContent: head, scope: "col", className: "number" }))));
     byId("picture-values").tBodies[0].replaceChildren(...rows);
   }
 
-  byId("picture-precision").textContent = `Values are those of the pixel under the pointer, linear, rounded by at most ${short(100 * data.precision)} %; error maps are made of them here.`;
+  byId("picture-precision").textContent = `Values are those of the pixel under the pointer, linear, rounded by at most ${short(100 * data.precision)} %. Error maps are made of them here, so that errors below that share of a value are lost; the figures of this page come from the whole values.`;
   sceneChanged();
 }
