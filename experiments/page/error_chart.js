@@ -32,11 +32,14 @@ function paretoFront(points) {
 
 // A logarithmic axis over just the values, labelled at 1, 2 and 5 times powers of ten.
 function logarithmicAxis(text, values) {
-  const ink = styleOf("--ink"), labelled = (value) => [1, 2, 5].includes(Math.round(value / 10 ** Math.floor(Math.log10(value) + 1e-9)));
+  const ink = styleOf("--ink");
+  const reads = ({ value }) => [1, 2, 5].some((digit) => Math.abs(value / 10 ** Math.floor(Math.log10(value) + 1e-9) - digit) < 1e-6);
   return { type: "logarithmic", title: { display: true, text, color: ink }, grid: { color: styleOf("--line") },
-    min: Math.min(...values) / 1.25, max: Math.max(...values) * 1.25,
-    ticks: { color: ink, autoSkip: true, callback: (value) => short(value) },
-    afterBuildTicks: (axis) => { axis.ticks = axis.ticks.filter(({ value }) => labelled(value) && value >= axis.min && value <= axis.max); } };
+    min: Math.min(...values) / 1.25, max: Math.max(...values) * 1.25, ticks: { color: ink, callback: (value) => short(value) },
+    afterBuildTicks: (axis) => {
+      const few = axis.ticks.filter(reads);
+      if (few.length > 1) axis.ticks = few;
+    } };
 }
 
 // Whiskers of the intervals, across points of this chart.

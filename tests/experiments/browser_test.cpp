@@ -61,7 +61,7 @@ protected:
             "done([...one.getImageData(0, 0, 1, 1).data].slice(0, 3).join(' ')); })))");
     }
     static std::string value_row(int row) {
-        return browser().text("[...document.querySelectorAll('#picture-values tr')[" + std::to_string(row) +
+        return browser().text("[...document.querySelectorAll('#picture-values tbody tr')[" + std::to_string(row) +
                               "].cells].map((cell) => cell.textContent).join(' ')");
     }
 
