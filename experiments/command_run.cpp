@@ -1,21 +1,27 @@
 // `plumbline run`: a whole experiment.
-#include <cstdlib>
+#include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <string>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "experiments/accuracy_figure.h"
 #include "experiments/backend_option.h"
+#include "experiments/cache_option.h"
 #include "experiments/command.h"
 #include "experiments/convergence_report.h"
+#include "experiments/disk_use.h"
 #include "experiments/exit_code.h"
 #include "experiments/experiment_file.h"
 #include "experiments/generation.h"
 #include "experiments/interruption.h"
+#include "experiments/recorded_run.h"
 #include "experiments/runner.h"
 #include "experiments/summary.h"
 #include "experiments/view_options.h"
+#include "frames/atomic_file.h"
 
 namespace plumb {
 namespace {
@@ -25,23 +31,15 @@ constexpr const char* examples = R"(Examples:
   plumbline run experiments/one_vs_two_layers.toml --quick          a look at it within a minute
   plumbline run experiments/convergence.toml                     how fast the truth comes: a figure
   plumbline run experiments/generation.toml                      second layers held against the exact ones
+  plumbline run out/one_vs_two_layers/results.json --output out/again     a run once more, held against what it found
   plumbline run mine.toml --output out/mine --scenes-dir ~/scenes
-Exits with 1 where cells failed (they are listed), with 130 where it was interrupted.)";
+Exits with 1 where cells failed (they are listed) or a repeated run came out otherwise, with 130 where it was interrupted.)";
 
 struct Options {
     std::filesystem::path experiment;
     RunOptions run;
     bool quick = false, no_frames = false;
 };
-
-// $XDG_CACHE_HOME/plumbline, or ~/.cache/plumbline, or a folder here where there is no home.
-std::filesystem::path default_cache() {
-    if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache && *cache)
-        return std::filesystem::path(cache) / "plumbline";
-    if (const char* home = std::getenv("HOME"); home && *home)
-        return std::filesystem::path(home) / ".cache" / "plumbline";
-    return "cache";
-}
 
 void print_question(const std::string& title, const std::string& question) {
     fmt::print("{}\n", title);
@@ -92,33 +90,72 @@ int run_generation(const Options& options, const CommonOptions& common, Generati
     return exit_fine;
 }
 
-int run_comparison(const Options& options, const CommonOptions& common, Experiment experiment) {
-    if (options.quick) make_quick(experiment);
-    const RunOptions run_options = run_options_of(options, experiment.name);
-    print_question(experiment.title, experiment.question);
-    const RunResults results = run_experiment(experiment, SceneFinder(common.scenes_dirs), run_options);
+void print_failures(const RunResults& results) {
+    if (results.failures.empty()) return;
+    fmt::print("\n{} cell{} failed:\n", results.failures.size(), results.failures.size() == 1 ? "" : "s");
+    for (const CellFailure& failure : results.failures) fmt::print("  {}: {}\n", failure.cell, failure.message);
+}
 
-    fmt::print("\n{}\n", print_results_table(results.rows));
+void write_accuracy_files(const RunResults& results, const std::filesystem::path& folder) {
+    const std::string figure = print_accuracy_figure(results);
+    if (figure.empty()) return;
+    write_text_atomically(folder / "accuracy.svg", figure);
+    write_text_atomically(folder / "equal_rows.csv", print_equal_rows_csv(results));
+    fmt::print("Figure  {}\n", (folder / "accuracy.svg").string());
+}
+
+RunResults run_comparison(const RunOptions& run_options, const CommonOptions& common, const Experiment& experiment) {
+    const SceneFinder finder(common.scenes_dirs);
+    print_question(experiment.title, experiment.question);
+    fmt::print("{}\n", describe_disk_use(disk_use(experiment, finder, run_options.write_frames), run_options.cache_dir,
+                                         run_options.output));
+    std::fflush(stdout);
+    RunResults results = run_experiment(experiment, finder, run_options);
+
+    fmt::print("\n{}\n{}\n", print_results_table(results.rows), print_equal_rows(results));
     for (const std::string& sentence : results.summary) fmt::print("* {}\n", sentence);
     int cached = 0;
     for (const ReferenceUse& use : results.references) cached += use.from_cache ? 1 : 0;
     fmt::print("\n{} truths ({} of them from the cache), {} on {}, {:.0f} s\n", results.references.size(), cached,
                results.gl_renderer, results.system.cpu, results.seconds);
-    if (!results.failures.empty()) {
-        fmt::print("\n{} cell{} failed:\n", results.failures.size(), results.failures.size() == 1 ? "" : "s");
-        for (const CellFailure& failure : results.failures) fmt::print("  {}: {}\n", failure.cell, failure.message);
-    }
+    print_failures(results);
     fmt::print("\nTable   {}\nNumbers {}\nPage    {}\n", (run_options.output / "results.csv").string(),
                (run_options.output / "results.json").string(), (run_options.output / "index.html").string());
-    if (results.interrupted) {
-        fmt::print("\nInterrupted: the same command goes on where this one stopped.\n");
-        return exit_interrupted;
-    }
+    write_accuracy_files(results, run_options.output);
+    if (results.interrupted) fmt::print("\nInterrupted: the same command goes on where this one stopped.\n");
+    return results;
+}
+
+int exit_code_of(const RunResults& results) {
+    if (results.interrupted) return exit_interrupted;
     return results.failures.empty() ? exit_fine : exit_failed;
 }
 
+// A run as its results.json tells it.
+int repeat(const Options& options, const CommonOptions& common) {
+    const RecordedRun recorded = read_recorded_run(options.experiment);
+    RunOptions run_options = run_options_of(options, recorded.experiment.name);
+    run_options.experiment_text = recorded.experiment_text;
+    if (std::filesystem::equivalent(run_options.output, options.experiment.parent_path())) {
+        throw ConfigError(
+            fmt::format("'{}' would be overwritten by its own repetition; name another folder with "
+                        "--output",
+                        options.experiment.string()));
+    }
+    const RunResults results = run_comparison(run_options, common, recorded.experiment);
+    if (results.interrupted) return exit_interrupted;
+    const RunDifference apart = difference(recorded, results);
+    fmt::print("\n{} of {} rows have the recorded measures, bit for bit\n",
+               apart.rows - static_cast<int>(apart.rows_apart.size()), apart.rows);
+    for (const std::string& row : apart.rows_apart) fmt::print("  {}\n", row);
+    for (const std::string& cause : apart.causes) fmt::print("not as it was: {}\n", cause);
+    return apart.rows_apart.empty() ? exit_code_of(results) : exit_failed;
+}
+
 int run(const Options& options, const CommonOptions& common) {
-    const ConfigValue table = read_config(options.experiment);
+    if (options.experiment.extension() == ".json") return repeat(options, common);
+    const std::string text = read_config_text(options.experiment);
+    const ConfigValue table = parse_config(text, options.experiment.string());
     switch (kind_of(table, options.experiment)) {
         case ExperimentKind::convergence:
             return run_convergence(options, common, parse_convergence(table, options.experiment));
@@ -127,7 +164,11 @@ int run(const Options& options, const CommonOptions& common) {
         case ExperimentKind::comparison:
             break;
     }
-    return run_comparison(options, common, parse_experiment(table, options.experiment));
+    Experiment experiment = parse_experiment(table, options.experiment);
+    if (options.quick) make_quick(experiment);
+    RunOptions run_options = run_options_of(options, experiment.name);
+    run_options.experiment_text = text;
+    return exit_code_of(run_comparison(run_options, common, experiment));
 }
 
 }  // namespace
@@ -135,12 +176,11 @@ int run(const Options& options, const CommonOptions& common) {
 void add_run_command(CLI::App& app, const CommonOptions& common, Action& action) {
     CLI::App* command = app.add_subcommand("run", "Run an experiment: table, files and page")->group("Measure");
     auto options = std::make_shared<Options>();
-    options->run.cache_dir = default_cache();
-    command->add_option("experiment", options->experiment, "Experiment file (TOML)")->required()->type_name("FILE");
+    command->add_option("experiment", options->experiment, "Experiment file (TOML), or the results.json of a run")
+        ->required()
+        ->type_name("FILE");
     command->add_option("-o,--output", options->run.output, "Results folder; out/NAME by default");
-    command->add_option("--cache-dir", options->run.cache_dir, "Folder of kept references")
-        ->capture_default_str()
-        ->envname("PLUMBLINE_CACHE");
+    add_cache_option(*command, options->run.cache_dir);
     command->add_flag("--quick", options->quick,
                       "Try it: a quarter of the resolution, one view per scene, few samples");
     command->add_flag("--no-frames", options->no_frames, "Do not write EXR files");

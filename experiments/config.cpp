@@ -73,13 +73,17 @@ ConfigValue parse_config(std::string_view text, const std::string& source) {
     }
 }
 
-ConfigValue read_config(const std::filesystem::path& file) {
+std::string read_config_text(const std::filesystem::path& file) {
     std::ifstream stream(file, std::ios::binary);
     std::ostringstream text;
     if (!std::filesystem::is_regular_file(file) || !stream || !(text << stream.rdbuf())) {
         throw ConfigError(fmt::format("'{}': no such file, or it is empty or cannot be read", file.string()));
     }
-    return parse_config(text.str(), file.string());
+    return text.str();
+}
+
+ConfigValue read_config(const std::filesystem::path& file) {
+    return parse_config(read_config_text(file), file.string());
 }
 
 std::string nearest_name(std::string_view name, const std::vector<std::string>& candidates) {

@@ -35,6 +35,8 @@ struct ConfigMember {
 
 // `source` is what errors call the text. Throws ConfigError with the line where the text is not TOML.
 ConfigValue parse_config(std::string_view text, const std::string& source);
+// The text of a file. Throws ConfigError where there is none, or it is empty.
+std::string read_config_text(const std::filesystem::path& file);
 ConfigValue read_config(const std::filesystem::path& file);
 
 // The candidate that differs from `name` by the fewest single-letter edits, or nothing where all differ a lot.

@@ -9,7 +9,13 @@
 
 namespace plumb {
 
-ProgressLine::ProgressLine() : terminal_(::isatty(STDERR_FILENO) == 1) {
+std::string print_duration(double seconds) {
+    if (seconds < 90.0) return fmt::format("{:.0f} s", seconds);
+    if (seconds < 5400.0) return fmt::format("{:.0f} min", seconds / 60.0);
+    return fmt::format("{:.1f} h", seconds / 3600.0);
+}
+
+ProgressLine::ProgressLine() : terminal_(::isatty(STDERR_FILENO) == 1), start_(std::chrono::steady_clock::now()) {
     // A short job says nothing elsewhere than on a terminal.
     last_ = std::chrono::steady_clock::now() - (terminal_ ? std::chrono::hours(1) : std::chrono::hours(0));
 }
@@ -21,13 +27,19 @@ void ProgressLine::show(double fraction, const std::string& text) {
     if (now - last_ < (terminal_ ? std::chrono::milliseconds(100) : std::chrono::milliseconds(5000))) return;
     last_ = now;
     fraction = std::clamp(fraction, 0.0, 1.0);
+    const double elapsed = std::chrono::duration<double>(now - start_).count();
+    std::string line = fmt::format("{:3.0f} %  ", 100.0 * fraction);
+    // Before, the estimate jumps about.
+    constexpr double enough_seconds = 3.0, enough_done = 0.01;
+    if (elapsed > enough_seconds && fraction > enough_done)
+        line += fmt::format("{} left  ", print_duration(elapsed * (1.0 - fraction) / fraction));
+    line += text;
     if (!terminal_) {
-        fmt::print(stderr, "{:3.0f} %  {}\n", 100.0 * fraction, text);
+        fmt::print(stderr, "{}\n", line);
     } else {
         constexpr int width = 24;
         const int filled = static_cast<int>(std::lround(fraction * width));
-        fmt::print(stderr, "\r\x1b[K[{:#<{}}{: <{}}] {:3.0f} %  {}", "", filled, "", width - filled, 100.0 * fraction,
-                   text);
+        fmt::print(stderr, "\r\x1b[K[{:#<{}}{: <{}}] {}", "", filled, "", width - filled, line);
         shown_ = true;
     }
     std::fflush(stderr);

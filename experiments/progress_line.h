@@ -14,7 +14,8 @@ public:
     ProgressLine(const ProgressLine&) = delete;
     ProgressLine& operator=(const ProgressLine&) = delete;
 
-    // `fraction` in 0..1. Shows at most ten times a second on a terminal, every five seconds elsewhere.
+    // `fraction` in 0..1. Shows at most ten times a second on a terminal, every five seconds elsewhere; with the time
+    // that is left, once it can be told from what is done.
     void show(double fraction, const std::string& text);
     // Takes the line away on a terminal.
     void clear();
@@ -23,7 +24,10 @@ public:
 
 private:
     bool terminal_ = false, shown_ = false;
-    std::chrono::steady_clock::time_point last_;
+    std::chrono::steady_clock::time_point start_, last_;
 };
+
+// "40 s", "3 min", "2.5 h".
+std::string print_duration(double seconds);
 
 }  // namespace plumb

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -10,11 +11,14 @@
 #include "experiments/run_json.h"
 #include "frames/atomic_file.h"
 #include "metrics/comparison.h"
+#include "metrics/regions.h"
 
 namespace plumb {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
@@ -35,11 +39,31 @@ Json passes_of(const Timing& timing) {
     return json;
 }
 
+void add_path(const ResultRow& row, Json& json) {
+    if (row.stability) {
+        json["stability"] = {{"flicker", number(row.stability->flicker)},
+                             {"flicker_lower", number(row.stability->flicker_lower)},
+                             {"flicker_upper", number(row.stability->flicker_upper)},
+                             {"method_warping", number(row.stability->method_warping)},
+                             {"truth_warping", number(row.stability->truth_warping)},
+                             {"temporal_variance", number(row.stability->temporal_variance)}};
+    }
+    for (const FrameMeasure& frame : row.frames) {
+        json["frames"].push_back(
+            {{"time", frame.time}, {"rmse", number(frame.rmse)}, {"flicker", number(frame.flicker)}});
+    }
+}
+
 Json row_json(const ResultRow& row) {
     Json json = {
         {"scene", row.scene}, {"view", row.view}, {"plane", row.plane}, {"truth", row.truth}, {"method", row.method}};
+    if (!row.path.empty()) json["path"] = row.path;
+    if (!row.curve.empty())
+        json["sweep"] = {{"curve", row.curve}, {"parameter", row.curve_parameter}, {"value", row.curve_value}};
     if (row.path_tracer_samples > 0) {
         json["path_tracer_samples"] = row.path_tracer_samples;
+    } else if (row.oracle_layers >= 0) {
+        json["oracle_layers"] = row.oracle_layers;
     } else {
         json["method_hash"] = fmt::format("{:016x}", method_hash(row.parameters));
         json["parameters"] = parameters_of(row.parameters);
@@ -49,12 +73,19 @@ Json row_json(const ResultRow& row) {
     json["reference_samples"] = row.reference_samples;
     json["measures"] = Json::object();
     for (const auto& [name, value] : row.measures) json["measures"][name] = number(value);
+    for (const RegionError& region : row.regions) {
+        json["regions"][region.region] = {{"pixels", region.pixels},
+                                          {"unbiased_mse", number(region.mse)},
+                                          {"lower", number(region.mse_lower)},
+                                          {"upper", number(region.mse_upper)}};
+    }
+    add_path(row, json);
     json["milliseconds"] = {{"median", row.timing.median},
                             {"lower_quartile", row.timing.lower_quartile},
                             {"upper_quartile", row.timing.upper_quartile},
                             {"repetitions", row.timing.repetitions},
                             {"passes", passes_of(row.timing)}};
-    if (row.path_tracer_samples == 0) json["gbuffer_bytes_per_pixel"] = row.gbuffer_bytes_per_pixel;
+    if (row.is_method()) json["gbuffer_bytes_per_pixel"] = row.gbuffer_bytes_per_pixel;
     return json;
 }
 
@@ -64,12 +95,14 @@ Json experiment_json(const Experiment& experiment) {
                  {"question", experiment.question},
                  {"file", experiment.file.filename().string()},
                  {"quick", experiment.quick}};
+    json["oracle"] = experiment.oracle_layers;
     json["planes"] = experiment.planes;
     json["resolution"] = {experiment.width, experiment.height};
     json["bounces"] = experiment.quantities.bounces;
     json["ao_falloff"] = to_string(experiment.quantities.ao_falloff);
     json["indirect_falloff"] = to_string(experiment.quantities.indirect_falloff);
     json["reference"] = {{"samples", experiment.reference.samples},
+                         {"path_samples", experiment.reference.path_samples},
                          {"target_error", experiment.reference.target_error},
                          {"seed", experiment.reference.seed},
                          {"most_noise", experiment.reference.most_noise}};
@@ -78,11 +111,18 @@ Json experiment_json(const Experiment& experiment) {
     json["baseline"] = experiment.baseline;
     json["scenes"] = Json::array();
     for (const ExperimentScene& scene : experiment.scenes) {
-        json["scenes"].push_back({{"scene", scene.scene},
-                                  {"views", scene.views},
-                                  {"ao_radius", scene.ao_radius},
-                                  {"indirect_radius", number(scene.indirect_radius)},
-                                  {"minimum_separation", scene.minimum_separation}});
+        Json entry = {{"scene", scene.scene},
+                      {"views", scene.views},
+                      {"ao_radius", scene.ao_radius},
+                      {"indirect_radius", number(scene.indirect_radius)},
+                      {"minimum_separation", scene.minimum_separation}};
+        for (const ExperimentPath& path : scene.paths) {
+            entry["paths"].push_back({{"path", path.path},
+                                      {"start", path.start},
+                                      {"frames", path.frames},
+                                      {"frames_per_second", path.frames_per_second}});
+        }
+        json["scenes"].push_back(std::move(entry));
     }
     json["methods"] = Json::array();
     for (const Method& method : experiment.methods) {
@@ -104,16 +144,31 @@ std::string csv_text(const std::string& text) {
 }
 
 std::string print_csv(const RunResults& results) {
-    std::string text = "scene,view,plane,truth,method,path_tracer_samples,measured,reference_samples";
+    std::string text =
+        "scene,view,path,plane,truth,method,curve,curve_parameter,curve_value,oracle_layers,"
+        "path_tracer_samples,measured,reference_samples";
     for (const std::string& name : measure_names()) text.append(",").append(name);
+    for (const std::string& region : region_names()) text.append(",unbiased_mse_").append(region);
+    text += ",flicker,flicker_lower,flicker_upper,method_warping,truth_warping,temporal_variance";
     text +=
         ",milliseconds,milliseconds_lower_quartile,milliseconds_upper_quartile,repetitions,gbuffer_bytes_per_pixel,"
         "refusal\n";
     for (const ResultRow& row : results.rows) {
-        text += fmt::format("{},{},{},{},{},{},{},{}", csv_text(row.scene), csv_text(row.view), csv_text(row.plane),
-                            csv_text(row.truth), csv_text(row.method), row.path_tracer_samples, row.measured ? 1 : 0,
-                            row.reference_samples);
+        text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}", csv_text(row.scene), csv_text(row.view),
+                            csv_text(row.path), csv_text(row.plane), csv_text(row.truth), csv_text(row.method),
+                            csv_text(row.curve), csv_text(row.curve_parameter),
+                            row.curve.empty() ? "" : csv_number(row.curve_value),
+                            row.oracle_layers >= 0 ? fmt::format("{}", row.oracle_layers) : "", row.path_tracer_samples,
+                            row.measured ? 1 : 0, row.reference_samples);
         for (const auto& [name, value] : row.measures) text.append(",").append(csv_number(value));
+        for (const std::string& name : region_names()) {
+            const auto region = std::ranges::find(row.regions, name, &RegionError::region);
+            text.append(",").append(region == row.regions.end() ? "" : csv_number(region->mse));
+        }
+        const Stability stability = row.stability.value_or(Stability{none, none, none, none, none, none});
+        for (const double value : {stability.flicker, stability.flicker_lower, stability.flicker_upper,
+                                   stability.method_warping, stability.truth_warping, stability.temporal_variance})
+            text.append(",").append(csv_number(value));
         text += fmt::format(",{},{},{},{},{},{}\n", csv_number(row.timing.median),
                             csv_number(row.timing.lower_quartile), csv_number(row.timing.upper_quartile),
                             row.timing.repetitions, row.gbuffer_bytes_per_pixel, csv_text(row.refusal));
@@ -130,6 +185,7 @@ std::string print_json(const RunResults& results) {
                   {"version", results.gl_version},
                   {"software", results.gl_software}};
     json["experiment"] = experiment_json(results.experiment);
+    json["experiment_text"] = results.experiment_text;
     json["scene_hashes"] = results.scene_hashes;
     json["summary"] = results.summary;
     json["references"] = Json::array();

@@ -137,8 +137,9 @@ struct ReferenceUse {
 struct RunResults {
     Experiment experiment;
     SystemFacts system;
-    std::string command;  // as typed
-    std::string started;  // UTC, ISO 8601
+    std::string experiment_text;  // the experiment's file as it was read: what runs it again
+    std::string command;          // as typed
+    std::string started;          // UTC, ISO 8601
     std::string gl_backend, gl_vendor, gl_renderer, gl_version;
     bool gl_software = true;
     double seconds = 0.0;

@@ -28,6 +28,7 @@ RunResults run_experiment(const Experiment& experiment, const SceneFinder& finde
     results.experiment = experiment;
     results.system = read_system_facts();
     results.command = options.command;
+    results.experiment_text = options.experiment_text;
     results.started = utc_now();
 
     const std::unique_ptr<GlContext> context = GlContext::create(options.backend);

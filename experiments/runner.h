@@ -18,6 +18,7 @@ struct RunOptions {
     int threads = 0;  // of the path tracer; 0: all
     bool write_frames = true;
     std::string command;                      // as typed, for the record
+    std::string experiment_text;              // the experiment's file, for the record
     const std::atomic<bool>* stop = nullptr;  // ends the run after the current pass; what was done is written
 };
 

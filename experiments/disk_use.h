@@ -1,0 +1,26 @@
+// How much disk a comparison will take, told before it starts.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "experiments/experiment_file.h"
+#include "experiments/scene_finder.h"
+
+namespace plumb {
+
+// At most: files are compressed, which saves a third or so.
+struct DiskUse {
+    std::uintmax_t cache = 0;   // references, kept for other runs
+    std::uintmax_t output = 0;  // frames, pictures and, while it runs, finished cells
+};
+
+// Loads the scenes whose views the experiment does not name. Throws what loading throws.
+DiskUse disk_use(const Experiment& experiment, const SceneFinder& finder, bool write_frames);
+
+// One line, with the space that is free. Throws ImageError that says what to do where it does not suffice.
+std::string describe_disk_use(const DiskUse& use, const std::filesystem::path& cache,
+                              const std::filesystem::path& output);
+
+}  // namespace plumb
