@@ -32,9 +32,10 @@ void require_workload(const CheckFile& check) {
 void require_limits(const CheckFile& check) {
     const std::vector<std::string> missing = without_limit(check);
     if (missing.empty()) return;
-    throw ConfigError(fmt::format(
-        "{} of {} thresholds have no limit yet ('{}'); set them: plumbline check {} --calibrate", missing.size(),
-        check.set.thresholds.size(), fmt::join(missing, "', '"), check.experiment.file.string()));
+    throw ConfigError(
+        fmt::format("{} of {} thresholds have no limit yet, such as '{}'; set them: plumbline check {} "
+                    "--calibrate",
+                    missing.size(), check.set.thresholds.size(), missing.front(), check.experiment.file.string()));
 }
 
 // The folder of one must_fail run.
@@ -110,6 +111,7 @@ Experiment must_fail_experiment(const Experiment& experiment, const MustFail& mu
     result.methods = {must_fail.method};
     if (const Method* base = find_method(experiment.methods, threshold.relative_to)) result.methods.push_back(*base);
     result.baseline = must_fail.method.name;
+    if (threshold.kind != ThresholdKind::cost) result.timing = {0, 1};  // nobody reads the times
 
     std::erase_if(result.scenes,
                   [&](const ExperimentScene& scene) { return !matches_pattern(threshold.rows.scene, scene.scene); });

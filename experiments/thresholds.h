@@ -26,9 +26,10 @@ std::string_view to_string(ThresholdKind kind);
 enum class OverRows { worst, mean };
 std::string_view to_string(OverRows over);
 
-// Which rows: each a text in which "*" stands for any letters. A row with one truth only matches every `truth`.
+// Which rows: each a text in which "*" stands for any letters. Rows are of views (`path` is empty) or of camera paths
+// (`view` is empty). A row with one truth only matches every `truth`.
 struct RowPattern {
-    std::string scene = "*", view = "*", path = "*", plane, truth = "full", method;
+    std::string scene = "*", view = "*", path, plane, truth = "full", method;
 };
 
 // Whether `text` is what `pattern` says.
