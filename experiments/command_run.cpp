@@ -17,6 +17,7 @@
 #include "experiments/experiment_file.h"
 #include "experiments/generation.h"
 #include "experiments/interruption.h"
+#include "experiments/ladder.h"
 #include "experiments/recorded_run.h"
 #include "experiments/runner.h"
 #include "experiments/summary.h"
@@ -96,7 +97,11 @@ void print_failures(const RunResults& results) {
     for (const CellFailure& failure : results.failures) fmt::print("  {}: {}\n", failure.cell, failure.message);
 }
 
-void write_accuracy_files(const RunResults& results, const std::filesystem::path& folder) {
+void write_figures(const RunResults& results, const std::filesystem::path& folder) {
+    if (!results.waterfalls.empty()) {
+        write_text_atomically(folder / "ladder.svg", print_waterfalls(results.waterfalls));
+        fmt::print("Ladder  {}\n", (folder / "ladder.svg").string());
+    }
     const std::string figure = print_accuracy_figure(results);
     if (figure.empty()) return;
     write_text_atomically(folder / "accuracy.svg", figure);
@@ -114,6 +119,7 @@ RunResults run_comparison(const RunOptions& run_options, const CommonOptions& co
 
     fmt::print("\n{}\n{}\n", print_results_table(results.rows), print_equal_rows(results));
     for (const std::string& sentence : results.summary) fmt::print("* {}\n", sentence);
+    if (!results.waterfalls.empty()) fmt::print("\n{}", print_waterfall_table(results.waterfalls));
     int cached = 0;
     for (const ReferenceUse& use : results.references) cached += use.from_cache ? 1 : 0;
     fmt::print("\n{} truths ({} of them from the cache), {} on {}, {:.0f} s\n", results.references.size(), cached,
@@ -121,7 +127,7 @@ RunResults run_comparison(const RunOptions& run_options, const CommonOptions& co
     print_failures(results);
     fmt::print("\nTable   {}\nNumbers {}\nPage    {}\n", (run_options.output / "results.csv").string(),
                (run_options.output / "results.json").string(), (run_options.output / "index.html").string());
-    write_accuracy_files(results, run_options.output);
+    write_figures(results, run_options.output);
     if (results.interrupted) fmt::print("\nInterrupted: the same command goes on where this one stopped.\n");
     return results;
 }

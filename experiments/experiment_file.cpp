@@ -9,6 +9,7 @@
 #include <fmt/ranges.h>
 
 #include "experiments/config_values.h"
+#include "experiments/ladder.h"
 #include "experiments/scene_finder.h"
 #include "scenes/scene_error.h"
 
@@ -179,9 +180,8 @@ Experiment parse_experiment(const ConfigValue& table, const std::filesystem::pat
 
     ConfigReader reference = reader.table("reference");
     experiment.reference.samples = reference.integer("samples", experiment.reference.samples, 2, 1 << 24);
-    experiment.reference.path_samples =
-        reference.integer("path_samples", std::min(experiment.reference.samples, experiment.reference.path_samples), 2,
-                          1 << 24);
+    experiment.reference.path_samples = reference.integer(
+        "path_samples", std::min(experiment.reference.samples, experiment.reference.path_samples), 2, 1 << 24);
     for (const auto& [key, samples] : {std::pair{"samples", experiment.reference.samples},
                                        std::pair{"path_samples", experiment.reference.path_samples}}) {
         if (samples % 2 != 0) reference.fail(key, "must be even, because the reference keeps two halves");
@@ -214,7 +214,7 @@ Experiment parse_experiment(const ConfigValue& table, const std::filesystem::pat
     experiment.methods = std::move(selection.methods);
     experiment.sweep_points = std::move(selection.sweep_points);
     auto& presentation = std::get<ConfigMembers>(experiment.presentation.value);
-    for (const char* key : {"figures", "originals", "claims"}) {
+    for (const char* key : {"figures", "originals", "claims", "ladders"}) {
         if (const ConfigValue* tables = reader.value(key)) presentation.push_back({key, *tables});
     }
     experiment.baseline = reader.text("baseline", experiment.methods.front().name);
@@ -225,6 +225,7 @@ Experiment parse_experiment(const ConfigValue& table, const std::filesystem::pat
                     fmt::format("no method '{}'; {}", experiment.baseline, name_hint(experiment.baseline, methods)));
     }
     reader.finish();
+    read_ladders(experiment);  // throws for what climb() could not use
     return experiment;
 }
 

@@ -71,8 +71,8 @@ struct Experiment {
     std::vector<ExperimentScene> scenes;
     MethodList methods;
     std::map<std::string, SweepPoint> sweep_points;  // of the methods that a sweep made, by their names
-    // The tables `figures`, `originals` and `claims` as the file has them: what is made of the results, never of
-    // pixels.
+    // The tables `figures`, `originals`, `claims` and `ladders` as the file has them: what is made of the results,
+    // never of pixels.
     ConfigValue presentation{ConfigMembers{}, 0};
     bool quick = false;    // only the first view of each scene
     std::string baseline;  // the method that others are set against in the summary; the first by default

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
 namespace plumb {
 namespace {
 
@@ -14,5 +16,10 @@ double root(double mse) { return std::sqrt(std::max(0.0, mse)); }
 double ResultRow::rmse() const { return root(mse); }
 double ResultRow::rmse_lower() const { return root(mse_lower); }
 double ResultRow::rmse_upper() const { return root(mse_upper); }
+
+std::string oracle_name(int layers) {
+    if (layers == 0) return "oracle, all in view";
+    return fmt::format("oracle, {} layer{}", layers, layers == 1 ? "" : "s");
+}
 
 }  // namespace plumb

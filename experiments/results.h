@@ -73,6 +73,9 @@ struct ResultRow {
     double rmse_upper() const;
 };
 
+// What the oracle's rows are called: "oracle, 2 layers", "oracle, all in view" for 0.
+std::string oracle_name(int layers);
+
 struct Picture {
     std::string label;        // "truth" or a method's name
     std::string kind;         // "truth", "method" or "error"

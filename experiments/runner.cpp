@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "experiments/ladder.h"
 #include "experiments/path_run.h"
 #include "experiments/pictures.h"
 #include "experiments/result_files.h"
@@ -76,6 +77,7 @@ RunResults run_experiment(const Experiment& experiment, const SceneFinder& finde
     progress.clear();
     results.interrupted = stopped();
     results.summary = summarise(results);
+    results.waterfalls = climb(read_ladders(experiment), results);
     results.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     write_result_files(results, options.output);
     if (!results.interrupted) cells.clear();

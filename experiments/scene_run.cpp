@@ -18,11 +18,6 @@ namespace {
 // Any other seed makes paths independent of the reference's; this one flips half of the bits.
 constexpr std::uint64_t independent_seed_mask = 0x9E3779B97F4A7C15;
 
-std::string oracle_name(int layers) {
-    if (layers == 0) return "oracle, all in view";
-    return fmt::format("oracle, {} layer{}", layers, layers == 1 ? "" : "s");
-}
-
 constexpr double share_of_references = 0.7;  // of a scene's time, for the progress line only
 
 std::ptrdiff_t place_of(const std::vector<std::string>& names, const std::string& name) {
