@@ -141,9 +141,9 @@ public:
     std::string left_off() const {
         if (left_off_ == 0) return "";
         return fmt::format(
-            "{} sets of pictures are left off: with them this page would exceed {} MB. Their files lie in "
+            "{} of {} sets of pictures are left off: with them this page would exceed {} MB. Their files lie in "
             "the folder 'pictures' beside it.",
-            left_off_, most_picture_bytes / 1'000'000);
+            left_off_, sets_, most_picture_bytes / 1'000'000);
     }
 
 private:
@@ -158,6 +158,7 @@ private:
     }
 
     bool has_room(const std::vector<std::string>& files) {
+        ++sets_;
         std::uintmax_t bytes = bytes_;
         for (const std::string& file : files) {
             std::error_code error;
@@ -219,7 +220,7 @@ private:
     const std::filesystem::path& folder_;
     PageData& data_;
     std::uintmax_t bytes_ = 0;
-    int left_off_ = 0;
+    int sets_ = 0, left_off_ = 0;
 };
 
 Json waterfalls_json(const RunResults& results) {

@@ -1,12 +1,14 @@
 // The report page in a real browser: it draws, and answers mouse, touch and keys, without a script error.
 #include "tests/experiments/browser.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "experiments/page.h"
 #include "frames/atomic_file.h"
 #include "frames/colour_map.h"
+#include "frames/exr.h"
 #include "frames/image_file.h"
 #include "tests/experiments/page_sample.h"
 #include "tests/experiments/temporary_folder.h"
@@ -172,7 +174,14 @@ TEST_F(PageInBrowser, ChartsTheParetoFrontSweepsAndOraclesAndIsWalkedByKeys) {
 
 TEST_F(PageInBrowser, ShowsTheValuesUnderThePointer) {
     browser().open(page());
-    const Image truth = sample_truth(), one = sample_image("one");
+    const auto from_exr = [](const std::string& name, const Image& image) {
+        const auto file = folder_->path / fmt::format("{}.exr", name);
+        Frame frame(image.width(), image.height());
+        frame.set("total", image);
+        write_exr(file, frame);
+        return read_exr(file).plane("total");
+    };
+    const Image truth = from_exr("truth", sample_truth()), one = from_exr("one", sample_image("one"));
     for (const auto& [x, y] : {std::pair(0, 0), std::pair(13, 7), std::pair(31, 17)}) {
         browser().move_to("#pictures canvas", (x + 0.5) / sample_width, (y + 0.5) / sample_height);
         for (int row = 0; row < 2; ++row) {

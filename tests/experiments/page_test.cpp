@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "experiments/page_data.h"
 #include "frames/image_error.h"
 #include "tests/experiments/page_sample.h"
 #include "tests/experiments/temporary_folder.h"
@@ -39,6 +40,18 @@ TEST(Page, ContainsEachPlaneOnce) {
     const std::string page = print_page(results, folder.path);
     EXPECT_THAT(page,
                 AllOf(HasSubstr("id=\"values-0\""), HasSubstr("id=\"values-2\""), Not(HasSubstr("id=\"values-3\""))));
+}
+
+TEST(Page, LeavesOffPicturesThatWouldMakeItTooLargeAndSaysSo) {
+    const TemporaryFolder folder;
+    RunResults results = sample_results();
+    results.pictures = {sample_pictures(folder.path, "front"), sample_pictures(folder.path, "left")};
+    std::filesystem::resize_file(folder.path / "pictures/front.one.plane",
+                                 most_picture_bytes);  // a hole: no disk is used
+    const PageData data = page_data(results, folder.path);
+    EXPECT_THAT(data.json, HasSubstr("1 of 2 sets of pictures are left off"));
+    EXPECT_THAT(data.planes, testing::ElementsAre("pictures/left.truth.plane", "pictures/left.one.plane",
+                                                  "pictures/left.two.plane"));
 }
 
 TEST(Page, NamesThePictureThatIsMissing) {
