@@ -103,8 +103,10 @@ int reproduce(const Options& options, const CommonOptions& common, const std::st
         }
     }
     const PresentedReproduction presented = present(reproduction, measurements, folder);
-    fmt::print("{}\n{:.0f} s, {} on {}\n{}\n", presented.text, measurements.seconds, measurements.renderer,
-               measurements.cpu, (folder / "README.md").string());
+    fmt::print("{}\n", presented.text);
+    if (!measurements.cells.empty())
+        fmt::print("{:.0f} s, {} on {}\n", measurements.seconds, measurements.renderer, measurements.cpu);
+    fmt::print("{}\n", (folder / "README.md").string());
     return measurements.failures.empty() ? exit_fine : exit_failed;
 }
 

@@ -24,6 +24,12 @@ std::vector<std::string> values_of(const std::string& attribute, const Figure& f
     return values;
 }
 
+// The attribute whose values tell the points of one series apart; empty where a series is one point.
+std::string point_attribute(const Figure& figure) {
+    if (figure.kind == FigureKind::bars) return figure.x;
+    return figure.x == "parameter" || figure.series == "curve" ? "parameter" : "";
+}
+
 struct FigurePoint {
     std::string panel, series, category;
     double x = 0.0, y = 0.0, lower = 0.0, upper = 0.0;
@@ -49,8 +55,8 @@ std::optional<FigurePoint> make_point(const Figure& figure, const std::vector<Ce
     quantity.measure = figure.y, quantity.where = figure.where;
     if (!figure.panels.empty()) quantity.where.wanted[figure.panels] = {panel};
     quantity.first.wanted[figure.series] = {series};
-    const bool x_is_attribute = figure.kind == FigureKind::bars || figure.x == "parameter";
-    if (x_is_attribute) quantity.first.wanted[figure.x] = {category};
+    const std::string attribute = point_attribute(figure);
+    if (!attribute.empty()) quantity.first.wanted[attribute] = {category};
     quantity.second = figure.relative_to;
     const bool is_relative = !figure.relative_to.wanted.empty();
     // Where groups are scenes or views, the base is in the same one.
@@ -68,7 +74,7 @@ std::optional<FigurePoint> make_point(const Figure& figure, const std::vector<Ce
     point.y = mean.mean, point.count = mean.count;
     if (is_relative && std::isfinite(mean.lower)) point.lower = mean.lower, point.upper = mean.upper;
     if (figure.x == "parameter") point.x = std::stod(category);
-    if (!x_is_attribute) {
+    if (figure.kind == FigureKind::curves && figure.x != "parameter") {
         quantity.kind = QuantityKind::value, quantity.measure = figure.x;
         const Measured across = measure_quantity(cells, quantity);
         if (across.cases.empty()) return std::nullopt;
@@ -78,8 +84,7 @@ std::optional<FigurePoint> make_point(const Figure& figure, const std::vector<Ce
 }
 
 std::vector<FigurePoint> points_of(const Figure& figure, const std::vector<Cell>& cells) {
-    const bool x_is_attribute = figure.kind == FigureKind::bars || figure.x == "parameter";
-    const std::vector<std::string> categories = values_of(x_is_attribute ? figure.x : "", figure, cells);
+    const std::vector<std::string> categories = values_of(point_attribute(figure), figure, cells);
     std::vector<FigurePoint> points;
     for (const std::string& panel : values_of(figure.panels, figure, cells)) {
         for (const std::string& series : values_of(figure.series, figure, cells)) {

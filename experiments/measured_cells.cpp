@@ -76,11 +76,25 @@ std::string attribute_of(const Cell& cell, std::string_view attribute) {
 }
 
 double measure_of(const Cell& cell, std::string_view measure) {
-    const auto place = std::max(measure.rfind(" / ") + 1, measure.rfind(" * ") + 1);
-    if (place == 0) return plain_measure(cell, measure);
-    const double left = measure_of(cell, measure.substr(0, place - 1));
-    const double right = plain_measure(cell, measure.substr(place + 2));
-    return measure[place] == '/' ? left / right : left * right;
+    // The last operator, so that those before it are applied first.
+    std::size_t place = std::string_view::npos;
+    for (const std::string_view symbol : {" + ", " - ", " * ", " / "}) {
+        const std::size_t found = measure.rfind(symbol);
+        if (found != std::string_view::npos && (place == std::string_view::npos || found > place)) place = found;
+    }
+    if (place == std::string_view::npos) return plain_measure(cell, measure);
+    const double left = measure_of(cell, measure.substr(0, place));
+    const double right = plain_measure(cell, measure.substr(place + 3));
+    switch (measure[place + 1]) {
+        case '+':
+            return left + right;
+        case '-':
+            return left - right;
+        case '*':
+            return left * right;
+        default:
+            return left / right;
+    }
 }
 
 std::vector<Cell> cells_of(const RunResults& results) {

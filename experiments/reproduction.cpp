@@ -124,6 +124,7 @@ std::string Reproduction::sources() const {
     const auto add = [&](const std::string& source) {
         if (!source.empty() && std::ranges::find(places, source) == places.end()) places.push_back(source);
     };
+    for (const Drawing& drawing : drawings) add(drawing.source);
     for (const Figure& figure : presentation.figures) add(figure.source);
     for (const Originals& originals : presentation.originals) add(originals.source);
     for (const Claim& claim : presentation.claims) add(claim.source);
@@ -154,6 +155,12 @@ Reproduction load_reproduction(const std::string& name_or_path) {
             fmt::format("nothing to reproduce is called '{}'; {}", name_or_path, name_hint(name_or_path, names)));
     }
     reproduction.name = path.stem().string();
+    if (is_drawing_file(reproduction.table)) {
+        reproduction.drawings = parse_drawings(reproduction.table, reproduction.file);
+        ConfigReader reader(reproduction.table, reproduction.file.string());
+        reproduction.title = reader.required_text("title"), reproduction.question = reader.required_text("question");
+        return reproduction;
+    }
     reproduction.presentation = parse_presentation(reproduction.table, reproduction.file);
     switch (kind_of(reproduction.table, reproduction.file)) {
         case ExperimentKind::comparison: {
@@ -179,9 +186,12 @@ Reproduction load_reproduction(const std::string& name_or_path) {
 
 Measurements run_reproduction(const Reproduction& reproduction, const SceneFinder& finder, const RunOptions& options,
                               bool quick) {
-    const bool is_generation = kind_of(reproduction.table, reproduction.file) == ExperimentKind::generation;
-    Measurements measurements = is_generation ? run_generation_experiment(reproduction, finder, options, quick)
-                                              : run_comparison(reproduction, finder, options, quick);
+    Measurements measurements;
+    if (reproduction.drawings.empty()) {
+        const bool is_generation = kind_of(reproduction.table, reproduction.file) == ExperimentKind::generation;
+        measurements = is_generation ? run_generation_experiment(reproduction, finder, options, quick)
+                                     : run_comparison(reproduction, finder, options, quick);
+    }
     measurements.experiment = reproduction.name, measurements.command = options.command;
     measurements.quick = quick;
     return measurements;

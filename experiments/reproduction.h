@@ -13,6 +13,7 @@
 
 #include "experiments/claims.h"
 #include "experiments/config.h"
+#include "experiments/drawings.h"
 #include "experiments/measurements.h"
 #include "experiments/presentation.h"
 #include "experiments/runner.h"
@@ -25,6 +26,7 @@ struct Reproduction {
     std::filesystem::path file;
     ConfigValue table;  // the whole file
     Presentation presentation;
+    std::vector<Drawing> drawings;  // of a file that has nothing else, and nothing to run
 
     // Where in the seeds its figures, numbers and claims stand, each once: "000, table 4.2; 000, section 4.1.1".
     std::string sources() const;
@@ -36,7 +38,7 @@ std::vector<std::string> reproduction_names();
 // plane or scene that the experiment does not have.
 Reproduction load_reproduction(const std::string& name_or_path);
 
-// Renders and measures; the run's own files go to options.output. Optional scenes that are not there are left out.
+// Renders and measures, unless there are drawings only; the run's own files go to options.output. Optional scenes that are not there are left out.
 // Throws what loading and rendering throw.
 Measurements run_reproduction(const Reproduction& reproduction, const SceneFinder& finder, const RunOptions& options,
                               bool quick);

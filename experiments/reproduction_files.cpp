@@ -25,6 +25,7 @@ public:
                               reproduction_.sources());
         if (measurements_.quick) add_text("This was a trial run (--quick): its figures prove nothing.");
         for (const std::string& scene : measurements_.left_out) add_text(fmt::format("Left out: {}", scene));
+        for (std::size_t i = 0; i < reproduction_.drawings.size(); ++i) add_drawing(i);
         for (std::size_t i = 0; i < reproduction_.presentation.figures.size(); ++i) add_figure(i);
         for (std::size_t i = 0; i < reproduction_.presentation.originals.size(); ++i) add_originals(i);
         add_claims();
@@ -54,6 +55,16 @@ private:
         readme_ += table.print_markdown();
         presented_.text += fmt::format("\n{}\n{}", title, table.print_text());
         write(name + ".csv", table.print_csv());
+    }
+
+    void add_drawing(std::size_t index) {
+        const Drawing& drawing = reproduction_.drawings[index];
+        const std::string name = fmt::format("figure-{}", index + 1), svg = print_drawing(drawing);
+        add_heading(drawing.title, drawing.source);
+        readme_ += fmt::format("![{}]({}.png)\n", drawing.title, name);
+        write(name + ".svg", svg);
+        write(name + ".png", rasterise_svg(svg));
+        write(name + ".csv", drawing_numbers(drawing).print_csv());
     }
 
     void add_figure(std::size_t index) {
@@ -104,6 +115,7 @@ private:
     }
 
     void add_facts() {
+        if (measurements_.cells.empty()) return;
         add_heading("How it was measured", "");
         readme_ +=
             fmt::format("`{}`, {}, {} on {}, {:.0f} s. `numbers.csv` holds every number.\n", measurements_.command,
