@@ -23,7 +23,7 @@ public:
         position_ = {position[0], position[1], position[2]};
         const double depth = now.depth.at(x, y);
         visible_ = std::isfinite(depth) && depth > 0.0;
-        radius_ = tolerance * depth;
+        if (visible_) radius_ = same_surface_radius(now.position, depth, x, y, tolerance);
         motion_ = {now.motion.at(x, y, 0), now.motion.at(x, y, 1)};
     }
 

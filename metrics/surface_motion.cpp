@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <span>
 #include <string_view>
 #include <utility>
 
@@ -10,6 +12,21 @@
 #include "frames/image_error.h"
 
 namespace plumb {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+// To the position of a pixel that may lie outside or show nothing: then infinite.
+double distance_to(const Image& position, std::span<const float> from, int x, int y) {
+    if (x < 0 || y < 0 || x >= position.width() || y >= position.height()) return infinity;
+    const auto there = position.pixel(x, y);
+    const double distance =
+        std::hypot(double{there[0]} - from[0], double{there[1]} - from[1], double{there[2]} - from[2]);
+    return std::isnan(distance) ? infinity : distance;
+}
+
+}  // namespace
 
 BilinearPlace BilinearPlace::at(double x, double y) {
     const double x0 = std::floor(x), y0 = std::floor(y);
@@ -46,6 +63,18 @@ bool shows_surface(const BilinearPlace& place, const Image& positions, const std
     });
 }
 
+double same_surface_radius(const Image& position, double depth, int x, int y, double tolerance) {
+    const auto own = position.pixel(x, y);
+    // Of a pixel at an edge one of two neighbours still shows its surface.
+    const double along_row = std::min(distance_to(position, own, x - 1, y), distance_to(position, own, x + 1, y));
+    const double along_column = std::min(distance_to(position, own, x, y - 1), distance_to(position, own, x, y + 1));
+    const double step = std::max(along_row, along_column);
+    if (std::isinf(step)) return tolerance * depth;
+    // At things one pixel wide both neighbours show what lies behind, which is no step along a surface.
+    constexpr double widest = 5.0;
+    return tolerance * depth * std::clamp(2.0 * step / (tolerance * depth), 1.0, widest);
+}
+
 std::optional<BilinearPlace> place_before(const Image& motion, const Image& depth, const Image& position,
                                           const Image& position_before, int x, int y, double tolerance) {
     const double before_x = x + double{motion.at(x, y, 0)}, before_y = y + double{motion.at(x, y, 1)};
@@ -56,7 +85,8 @@ std::optional<BilinearPlace> place_before(const Image& motion, const Image& dept
     if (!inside || !std::isfinite(distance) || !(distance > 0.0)) return std::nullopt;
     const BilinearPlace place = BilinearPlace::at(before_x, before_y);
     const auto own = position.pixel(x, y);
-    if (!shows_surface(place, position_before, {own[0], own[1], own[2]}, tolerance * distance)) return std::nullopt;
+    const double radius = same_surface_radius(position, distance, x, y, tolerance);
+    if (!shows_surface(place, position_before, {own[0], own[1], own[2]}, radius)) return std::nullopt;
     return place;
 }
 

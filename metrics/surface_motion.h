@@ -1,8 +1,10 @@
 // Where the surface point that a pixel shows was in the frame before, and whether it was visible there.
 //
 // Exact motion vectors point from each pixel of now to a place between four pixels of before. The point was visible
-// there where all of these pixels that a bilinear look-up needs show the same surface: their world positions lie within
-// `tolerance` times the pixel's depth of its own. Surfaces that moved by themselves count as not visible.
+// there where all of these pixels that a bilinear look-up needs show the same surface: their world positions are no
+// farther from its own than `tolerance` times the pixel's depth, or than twice the step to the nearer neighbours, which
+// lets small images and surfaces seen at a slope pass, up to five times the tolerance. Surfaces that moved by
+// themselves count as not visible.
 #pragma once
 
 #include <array>
@@ -27,8 +29,13 @@ struct BilinearPlace {
     bool inside(int width, int height) const;
 };
 
-// A pixel is 0.2 % of its depth wide (60 degrees over 640 pixels); 2 % lets surfaces seen at a slope of 10 : 1 pass.
+// The width of ten pixels of 640 over 60 degrees: more than rounding and interpolation move a point, less than most
+// surfaces lie behind each other.
 inline constexpr double same_surface_tolerance = 0.02;
+
+// Metres around the position of pixel (x, y) within which the same surface lies.
+double same_surface_radius(const Image& position, double depth, int x, int y,
+                           double tolerance = same_surface_tolerance);
 
 // True where all pixels of `place` that have weight lie inside and show positions within `radius` metres of `position`.
 bool shows_surface(const BilinearPlace& place, const Image& positions, const std::array<double, 3>& position,

@@ -56,6 +56,18 @@ TEST(Flicker, OfAnErrorThatSticksToTheScreenIsItsSlopeTimesTheMotion) {
     EXPECT_NEAR(result.rms, 0.3, float32);
 }
 
+TEST(Flicker, FollowsSurfacesWhosePixelsAreFarApart) {
+    // The wall's pixels are 0.01 m wide; of one only 0.2 m away, in an image so small, that is five per cent of depth.
+    const auto near = [](double camera) {
+        Frame frame = wall(camera, texture);
+        frame.set("depth", Image(width, height, 1, 0.2f));
+        return frame;
+    };
+    const Flicker result = flicker(near(0), near(0), near(1.5), with_motion(near(1.5), 1.5), "direct");
+    EXPECT_EQ(result.not_visible, 2u * height) << "two columns came in over the edge";
+    EXPECT_NEAR(result.rms, 0.0, float32);
+}
+
 TEST(Flicker, LeavesOutPointsThatWereHiddenBefore) {
     Frame truth_before = wall(0, texture);
     for (int y = 0; y < height; ++y) truth_before.plane("position").at(5, y, 2) = -1.0f;  // a post stood there
