@@ -70,6 +70,11 @@ void set_error(MeasuredThing& thing, const ReferencedError& error) {
     set_measure(thing, "trustworthy", error.trustworthy ? 1.0 : 0.0);
 }
 
+void whole_images_first(std::vector<MeasuredThing>& things) {
+    std::stable_partition(things.begin(), things.end(),
+                          [](const MeasuredThing& thing) { return thing.region.empty(); });
+}
+
 void add_measures(MeasuredThing& thing, const PathStabilityResult& result) {
     const double values[] = {
         result.flicker.value,           result.flicker.lower,           result.flicker.upper,
@@ -170,7 +175,7 @@ std::optional<ReferencedError> SequenceComparison::error_of(const std::string& p
 std::vector<MeasuredThing> SequenceComparison::whole() const {
     if (frames_.size() == 1) {
         std::vector<MeasuredThing> things = frames_.front().things;
-        std::ranges::stable_partition(things, [](const MeasuredThing& thing) { return thing.region.empty(); });
+        whole_images_first(things);
         return things;
     }
     // Regions may be missing in some frames: their order is that of their first appearance.
@@ -196,7 +201,7 @@ std::vector<MeasuredThing> SequenceComparison::whole() const {
         if (const auto stability = stability_.find(key); stability != stability_.end())
             add_measures(thing, stability->second.result());
     }
-    std::ranges::stable_partition(things, [](const MeasuredThing& thing) { return thing.region.empty(); });
+    whole_images_first(things);
     return things;
 }
 

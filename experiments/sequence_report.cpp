@@ -91,6 +91,7 @@ struct Row {
 // Columns that are "-" in every row are left out.
 std::string print_rows(const std::vector<std::string>& heads, const std::vector<Row>& rows) {
     std::vector<TerminalTable::Column> columns;
+    columns.reserve(heads.size() + error_cells().size());
     for (const std::string& head : heads) columns.push_back({head});
     std::vector<Cell> cells = error_cells();
     std::erase_if(cells, [&](const Cell& cell) {
