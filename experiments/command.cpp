@@ -102,6 +102,7 @@ int run_command_line(int argc, const char* const* argv) {
     add_compare_command(app, common, action);
     add_judge_command(app, common, action);
     add_run_command(app, common, action);
+    add_tune_command(app, common, action);
     add_reproduce_command(app, common, action);
     add_check_command(app, common, action);
     try {

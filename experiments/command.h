@@ -29,6 +29,7 @@ void add_compare_command(CLI::App& app, const CommonOptions& common, Action& act
 void add_judge_command(CLI::App& app, const CommonOptions& common, Action& action);
 void add_check_command(CLI::App& app, const CommonOptions& common, Action& action);
 void add_run_command(CLI::App& app, const CommonOptions& common, Action& action);
+void add_tune_command(CLI::App& app, const CommonOptions& common, Action& action);
 void add_reproduce_command(CLI::App& app, const CommonOptions& common, Action& action);
 
 // Parses the command line, runs the subcommand, and turns errors into a message and an exit code.

@@ -56,6 +56,38 @@ TEST(ExperimentFile, MistakesAreReportedWithTheirLine) {
                 AllOf(HasSubstr("e.toml:1: baseline"), HasSubstr("did you mean 'mine'?")));
 }
 
+TEST(ExperimentFile, ASweepMakesAMethodOfEachValue) {
+    const std::string sweep = R"(planes = ["ao"]
+methods = ["one_layer", {name = "mine", base = "two_layers", sweep = {"ao.samples" = [6, 20]}}]
+[[scenes]]
+scene = "cornell"
+[[scenes.paths]]
+path = "push"
+frames = 5
+)";
+    const Experiment experiment = parse(sweep);
+    ASSERT_EQ(experiment.methods.size(), 3u);
+    EXPECT_EQ(experiment.methods[2].name, "mine, ao.samples = 20");
+    EXPECT_EQ(experiment.methods[2].ao.samples, 20);
+    EXPECT_EQ(experiment.methods[2].gbuffer.layers, 2);
+    const SweepPoint& point = experiment.sweep_points.at("mine, ao.samples = 6");
+    EXPECT_EQ(point.curve, "mine");
+    EXPECT_EQ(point.parameter, "ao.samples");
+    EXPECT_EQ(point.value, 6.0);
+    ASSERT_EQ(experiment.scenes[0].paths.size(), 1u);
+    EXPECT_EQ(experiment.scenes[0].paths[0].frames, 5);
+
+    const auto failure = [&](const std::string& from, const std::string& to) {
+        std::string text = sweep;
+        return parse_failure(text.replace(text.find(from), from.size(), to));
+    };
+    EXPECT_THAT(failure("[6, 20]", "[6]"), AllOf(HasSubstr("e.toml:2"), HasSubstr("two values or more")));
+    EXPECT_THAT(failure("[6, 20]", "[6, \"many\"]"), HasSubstr("must hold numbers"));
+    EXPECT_THAT(failure("ao.samples", "ao.smaples"), HasSubstr("'ao.samples'"));
+    EXPECT_THAT(failure("[6, 20]", "[6, 6]"), HasSubstr("two methods are called"));
+    EXPECT_THAT(failure("frames = 5", "frames = 1"), HasSubstr("scenes[1]"));
+}
+
 TEST(ExperimentFile, AnUnknownPlaneIsAnErrorThatNamesTheNearest) {
     std::string text = valid;
     text.replace(text.find("ao"), 2, "indirekt");

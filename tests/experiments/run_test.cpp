@@ -1,8 +1,12 @@
 // A whole experiment at thumbnail size, from the command line to the page.
 #include <algorithm>
+#include <cstdlib>
 #include <fstream>
 #include <sstream>
+#include <tuple>
+#include <vector>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -20,10 +24,12 @@ using testing::HasSubstr;
 constexpr const char* experiment = R"(title = "A thumbnail"
 planes = ["ao", "indirect"]
 resolution = [64, 36]
-methods = ["one_layer", "two_layers"]
+methods = ["one_layer", "two_layers", {name = "few", base = "one_layer", sweep = {"ao.samples" = [4, 8]}}]
 path_tracer_samples = [2]
+oracle = [1]
 [reference]
 samples = 16
+path_samples = 8
 [timing]
 repetitions = 2
 [[scenes]]
@@ -32,6 +38,10 @@ views = ["front"]
 ao_radius = 0.1
 indirect_radius = 0.3
 minimum_separation = 0.03
+[[scenes.paths]]
+path = "strafe"
+start = 0.25
+frames = 3
 [[scenes]]
 scene = "no_such_scene"
 )";
@@ -75,13 +85,91 @@ TEST_F(Run, PrintsTableSummaryAndPathsAndListsTheSceneThatFailed) {
 
 TEST_F(Run, WritesARowForEveryCellOfTheSceneThatWorks) {
     const auto json = results("first");
-    // ao has one truth, indirect two; two methods each; one point of the path tracer's curve per plane.
-    EXPECT_EQ(json["rows"].size(), 2u * (1 + 2) + 2u);
-    for (const auto& row : json["rows"]) EXPECT_GT(row["milliseconds"]["median"], 0.0) << row.dump();
+    // ao has one truth, indirect two; four methods each; for either plane one point of the path tracer's curve and the
+    // oracle; then each plane and method along the path.
+    EXPECT_EQ(json["rows"].size(), 4u * (1 + 2) + 2u + 2u + 2u * 4u);
+    for (const auto& row : json["rows"]) {
+        if (row.contains("oracle_layers")) continue;  // takes no time
+        EXPECT_GT(row["milliseconds"]["median"], 0.0) << row.dump();
+    }
     EXPECT_EQ(json["failures"].size(), 1u);
     EXPECT_EQ(json["experiment"]["resolution"], nlohmann::json({64, 36}));
     const std::string csv = text_of(folder_->path / "first/results.csv");
     EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(csv, '\n')), json["rows"].size() + 1);
+}
+
+TEST_F(Run, TheOracleKnowsBetterThanTheMethodsAndSweepsTellTheirPoints) {
+    const auto json = results("first");
+    double oracle = 0.0, method = 0.0;
+    std::vector<double> swept;
+    for (const auto& row : json["rows"]) {
+        if (row["plane"] != "ao" || row.contains("path")) continue;
+        if (row.contains("oracle_layers")) oracle = row["measures"]["rmse"];
+        if (row["method"] == "one_layer") method = row["measures"]["rmse"];
+        if (row.contains("sweep")) swept.push_back(row["sweep"]["value"]);
+    }
+    EXPECT_GT(oracle, 0.0);
+    EXPECT_LT(oracle, method) << "no method sees more than the oracle";
+    EXPECT_EQ(swept, (std::vector{4.0, 8.0}));
+}
+
+TEST_F(Run, APathHasAnErrorForEachFrameAFlickerBetweenThemAndPictures) {
+    const auto json = results("first");
+    int paths = 0;
+    for (const auto& row : json["rows"]) {
+        if (!row.contains("path")) continue;
+        ++paths;
+        ASSERT_EQ(row["frames"].size(), 3u) << row.dump();
+        EXPECT_DOUBLE_EQ(row["frames"][1]["time"], 0.25 + 1.0 / 30.0);
+        EXPECT_TRUE(row["frames"][0]["flicker"].is_null()) << "nothing came before the first frame";
+        EXPECT_GT(row["frames"][2]["rmse"], 0.0);
+        EXPECT_GT(row["stability"]["method_warping"], 0.0);
+        EXPECT_TRUE(row["regions"].contains("border"));
+    }
+    EXPECT_EQ(paths, 8);
+    int pictures = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_->path / "first/pictures"))
+        pictures += entry.path().extension() == ".jpg";
+    // Per frame and plane: the truth, and each method with its error map.
+    EXPECT_EQ(pictures, 3 * 2 * (1 + 2 * 4));
+}
+
+TEST_F(Run, IsRepeatedBitForBitFromItsResults) {
+    const auto record = folder_->path / "first/results.json";
+    const ProgramRun again = run_plumbline({"run", record.string(), "--output", (folder_->path / "again").string(),
+                                            "--cache-dir", (folder_->path / "another cache").string()});
+    EXPECT_EQ(again.exit_code, 1) << "the scene that does not exist still does not\n" << again.output;
+    EXPECT_THAT(again.output, HasSubstr("24 of 24 rows have the recorded measures, bit for bit"));
+
+    auto forged = results("first");
+    forged["rows"][0]["measures"]["mse"] = 0.125;
+    std::ofstream(folder_->path / "forged.json") << forged;
+    const ProgramRun apart =
+        run_plumbline({"run", (folder_->path / "forged.json").string(), "--output", (folder_->path / "apart").string(),
+                       "--cache-dir", (folder_->path / "cache").string()});
+    EXPECT_EQ(apart.exit_code, 1);
+    EXPECT_THAT(apart.output, AllOf(HasSubstr("23 of 24 rows"), HasSubstr("mse was 0.125")));
+}
+
+TEST_F(Run, GoesOnWithTheCellsOfARunThatWasKilled) {
+    // Killed once the first cell is kept: what is rendered at any time before the end.
+    const auto out = folder_->path / "killed";
+    const std::string command = fmt::format(
+        "'{}' run '{}' --output '{}' --cache-dir '{}' >/dev/null 2>&1 & p=$!; "
+        "for i in $(seq 600); do ls '{}'/cells/*.exr >/dev/null 2>&1 && break; sleep 0.02; done; kill -9 $p; wait $p",
+        PLUMBLINE_PROGRAM, (folder_->path / "thumbnail.toml").string(), out.string(),
+        (folder_->path / "cache").string(), out.string());
+    std::ignore = std::system(command.c_str());
+    ASSERT_TRUE(std::filesystem::exists(out / "cells")) << "the run was not killed in its middle";
+    EXPECT_FALSE(std::filesystem::exists(out / "results.json"));
+    const auto kept = *std::filesystem::directory_iterator(out / "cells");
+    const auto written = kept.last_write_time();
+    run_it("killed");
+    EXPECT_FALSE(std::filesystem::exists(out / "cells")) << "finished runs need no cells";
+    EXPECT_LT(written, std::filesystem::last_write_time(out / "results.json"));
+    const auto a = results("first"), b = results("killed");
+    ASSERT_EQ(a["rows"].size(), b["rows"].size());
+    for (std::size_t i = 0; i < a["rows"].size(); ++i) EXPECT_EQ(a["rows"][i]["measures"], b["rows"][i]["measures"]);
 }
 
 TEST_F(Run, WritesFramesPicturesAndThePage) {
@@ -96,7 +184,7 @@ TEST_F(Run, WritesFramesPicturesAndThePage) {
 
 TEST_F(Run, ASecondRunReadsItsTruthsAndFindsTheSameErrors) {
     const ProgramRun second = run_it("second");
-    EXPECT_THAT(second.output, HasSubstr("2 truths (2 of them from the cache)"));
+    EXPECT_THAT(second.output, HasSubstr("6 truths (6 of them from the cache)"));
     const auto a = results("first"), b = results("second");
     ASSERT_EQ(a["rows"].size(), b["rows"].size());
     for (std::size_t i = 0; i < a["rows"].size(); ++i) {
@@ -109,7 +197,7 @@ TEST_F(Run, ADamagedCacheIsReportedAndRepaired) {
         if (entry.path().extension() == ".exr") std::filesystem::resize_file(entry.path(), 1000);
     }
     const ProgramRun run = run_it("third");
-    EXPECT_THAT(run.output, AllOf(HasSubstr("rendering it again"), HasSubstr("2 truths (0 of them from the cache)")));
+    EXPECT_THAT(run.output, AllOf(HasSubstr("rendering it again"), HasSubstr("6 truths (0 of them from the cache)")));
     EXPECT_EQ(results("first")["rows"][0]["measures"], results("third")["rows"][0]["measures"]);
 }
 

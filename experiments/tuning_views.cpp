@@ -1,0 +1,145 @@
+#include "experiments/tuning_views.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "experiments/method_timing.h"
+#include "experiments/reference_renderer.h"
+#include "experiments/settling.h"
+#include "experiments/view_truths.h"
+#include "metrics/comparison.h"
+#include "rasterizer/gl_context.h"
+#include "rasterizer/pipeline.h"
+
+namespace plumb {
+namespace {
+
+struct SceneViews {
+    const ExperimentScene* entry = nullptr;
+    Scene scene;
+    struct TruthOfView {
+        TuningView name;
+        ViewTruths truths;
+    };
+    std::vector<TruthOfView> views;
+};
+
+double error_of(const Image& image, const Truth& truth, const std::string& plane) {
+    Frame test(image.width(), image.height());
+    test.set(plane, image);
+    if (truth.frame->has("half_a." + plane)) {
+        ReferencedErrorSettings settings;
+        settings.bootstrap.resamples = 40;  // nobody looks at the interval
+        return std::sqrt(std::max(0.0, referenced_error(test, *truth.frame, plane, truth.samples, settings).mse));
+    }
+    return pixel_errors(image, truth.frame->plane(plane), 1.0).rmse;
+}
+
+}  // namespace
+
+struct TuningViews::Implementation {
+    const Experiment& experiment;
+    std::string plane;
+    bool limited;
+    std::unique_ptr<GlContext> context;
+    std::vector<std::unique_ptr<SceneViews>> scenes;
+
+    const Truth choose(const ViewTruths& truths) const {
+        const std::vector<Truth> all = truths.of(plane);
+        return limited && all.size() > 1 ? all[1] : all.front();
+    }
+};
+
+TuningViews::TuningViews(const Experiment& experiment, const std::string& plane, bool limited, int hold_out,
+                         const SceneFinder& finder, const RunOptions& options)
+    : implementation_(new Implementation{experiment, plane, limited, GlContext::create(options.backend), {}}) {
+    if (hold_out < 2) throw ConfigError(fmt::format("every {}. view held out: must be 2 or more", hold_out));
+    ProgressLine progress;
+    const ReferenceCache cache(options.cache_dir);
+    const ReferenceRenderer references(cache, progress, options.stop, options.threads);
+    RunResults record;
+    int trained = 0, judged = 0;
+    for (std::size_t s = 0; s < experiment.scenes.size(); ++s) {
+        auto views = std::make_unique<SceneViews>(
+            SceneViews{&experiment.scenes[s], finder.load(experiment.scenes[s].scene), {}});
+        std::vector<std::string> names = views->entry->views;
+        if (names.empty()) {
+            for (const Camera& camera : views->scene.cameras) names.push_back(camera.name);
+        }
+        const PathTracer tracer(views->scene);
+        const ReferenceSettings full = full_truth_settings(experiment, *views->entry);
+        const auto within = limited ? limited_truth_settings(experiment, *views->entry) : std::nullopt;
+        const double scenes = static_cast<double>(experiment.scenes.size());
+        const ProgressPart part{static_cast<double>(s) / scenes, static_cast<double>(s + 1) / scenes};
+        for (std::size_t i = 0; i < names.size(); ++i) {
+            const TuningView name{views->entry->scene, names[i], static_cast<int>(i) % hold_out == hold_out - 1};
+            const View view(views->scene.camera(names[i]), experiment.width, experiment.height);
+            const ProgressPart of_view = part.part(static_cast<double>(i) / static_cast<double>(names.size()),
+                                                   static_cast<double>(i + 1) / static_cast<double>(names.size()));
+            ViewTruths truths;
+            truths.full =
+                references.render(tracer, views->scene, view, full, {name.scene, name.view, "full"}, of_view, record);
+            if (within) {
+                truths.limit = views->entry->indirect_radius;
+                truths.limited = references.render(tracer, views->scene, view, *within,
+                                                   {name.scene, name.view, "limited"}, of_view, record);
+            }
+            if (options.stop && options.stop->load()) throw ConfigError("interrupted; the same command goes on");
+            (name.held_out ? judged : trained) += 1;
+            views->views.push_back({name, std::move(truths)});
+        }
+        implementation_->scenes.push_back(std::move(views));
+    }
+    if (trained == 0 || judged == 0) {
+        throw ConfigError(
+            fmt::format("{} views to train on and {} held out: at least one of each is needed; name more "
+                        "views or hold out others",
+                        trained, judged));
+    }
+}
+
+TuningViews::~TuningViews() = default;
+
+std::vector<ViewCost> TuningViews::costs(const Method& method, bool held_out) const {
+    const Experiment& experiment = implementation_->experiment;
+    std::vector<ViewCost> costs;
+    for (const std::unique_ptr<SceneViews>& scene : implementation_->scenes) {
+        if (std::ranges::none_of(scene->views, [&](const auto& view) { return view.name.held_out == held_out; }))
+            continue;
+        Quantities quantities = experiment.quantities;
+        quantities.planes = {implementation_->plane};
+        quantities.ao_radius = scene->entry->ao_radius;
+        const Method in_scene = method_in_scene(method, *scene->entry, experiment.file.string());
+        Pipeline pipeline(*implementation_->context, scene->scene, in_scene, quantities, experiment.width,
+                          experiment.height);
+        for (const SceneViews::TruthOfView& view : scene->views) {
+            if (view.name.held_out != held_out) continue;
+            const View camera(scene->scene.camera(view.name.view), experiment.width, experiment.height);
+            const Frame* truth = &view.truths.full.frame;
+            for (int frame = 1; frame < frames_to_settle(in_scene); ++frame) pipeline.time_passes(camera, truth);
+            const Frame image = pipeline.render(camera, nullptr, truth).frame;
+            const Timing timing = time_interleaved({&pipeline}, camera, truth, experiment.timing).front();
+            costs.push_back({view.name,
+                             {error_of(image.plane(implementation_->plane), implementation_->choose(view.truths),
+                                       implementation_->plane),
+                              timing.median}});
+        }
+    }
+    return costs;
+}
+
+TuningCost TuningViews::training_cost(const Method& method) const { return mean_cost(costs(method, false)); }
+
+TuningCost mean_cost(const std::vector<ViewCost>& costs) {
+    double error = 0.0, milliseconds = 0.0;
+    for (const ViewCost& cost : costs) {
+        error += std::log(cost.cost.error);
+        milliseconds += std::log(cost.cost.milliseconds);
+    }
+    const double count = static_cast<double>(costs.size());
+    return {std::exp(error / count), std::exp(milliseconds / count)};
+}
+
+}  // namespace plumb

@@ -1,0 +1,63 @@
+#include "experiments/cell_store.h"
+
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/experiments/temporary_folder.h"
+
+namespace plumb {
+namespace {
+
+PlaneImage image_of(const std::string& method, float value) {
+    PlaneImage image{"front", "ao", method, Image(5, 3, 1)};
+    for (float& v : image.image.values()) v = value;
+    image.image.values()[0] = 1.0f / 3.0f;
+    image.timing = {1.5, 1.25, 1.75, 7, {{"gbuffer", 0.5}, {"ao", 1.0}}};
+    image.gbuffer_bytes_per_pixel = 12;
+    return image;
+}
+
+TEST(CellStore, GivesBackEveryBitOfWhatItKept) {
+    const TemporaryFolder folder;
+    PlaneImage oracle = image_of("oracle, 2 layers", 0.25f);
+    oracle.oracle_layers = 2;
+    oracle.halves = {Image(5, 3, 1), Image(5, 3, 1)};
+    oracle.halves->b.values()[4] = 0.1f;
+    CellStore(folder.path / "cells").save("a key", {image_of("one", 0.5f), oracle});
+
+    const auto kept = CellStore(folder.path / "cells").load("a key");
+    ASSERT_TRUE(kept);
+    ASSERT_EQ(kept->size(), 2u);
+    const PlaneImage &one = kept->front(), &two = kept->back();
+    EXPECT_EQ(one.method, "one");
+    EXPECT_EQ(one.image.values()[0], 1.0f / 3.0f);
+    EXPECT_EQ(one.timing.median, 1.5);
+    EXPECT_EQ(one.timing.repetitions, 7);
+    ASSERT_EQ(one.timing.passes.size(), 2u);
+    EXPECT_EQ(one.timing.passes[1].pass, "ao");
+    EXPECT_EQ(one.gbuffer_bytes_per_pixel, 12);
+    EXPECT_EQ(one.oracle_layers, -1);
+    EXPECT_FALSE(one.halves);
+    EXPECT_EQ(two.oracle_layers, 2);
+    ASSERT_TRUE(two.halves);
+    EXPECT_EQ(two.halves->b.values()[4], 0.1f);
+}
+
+TEST(CellStore, KnowsNothingOfOtherKeysAndOfDamagedCells) {
+    const TemporaryFolder folder;
+    const CellStore store(folder.path / "cells");
+    EXPECT_FALSE(store.load("a key"));
+    store.save("a key", {image_of("one", 0.5f)});
+    EXPECT_FALSE(store.load("another key"));
+    EXPECT_TRUE(store.load("a key"));
+    for (const auto& entry : std::filesystem::directory_iterator(folder.path / "cells"))
+        std::filesystem::resize_file(entry.path(), 200);
+    EXPECT_FALSE(store.load("a key")) << "a cell that was cut off is rendered again";
+    store.clear();
+    EXPECT_FALSE(std::filesystem::exists(folder.path / "cells"));
+}
+
+}  // namespace
+}  // namespace plumb

@@ -1,0 +1,84 @@
+#include "experiments/ladder.h"
+
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/experiments/errors.h"
+#include "tests/experiments/sample_results.h"
+
+namespace plumb {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+const std::string experiment_text = R"(planes = ["ao"]
+oracle = [0]
+methods = ["one_layer", "two_layers"]
+[[scenes]]
+scene = "cornell"
+[[ladders]]
+plane = "ao"
+rungs = ["oracle, all in view", "two_layers"]
+)";
+
+Experiment parse(const std::string& text) { return parse_experiment(parse_config(text, "e.toml"), "e.toml"); }
+
+TEST(Ladder, ReadsItsRungsAndRefusesThoseThatAreNotCompared) {
+    const auto ladders = read_ladders(parse(experiment_text));
+    ASSERT_EQ(ladders.size(), 1u);
+    EXPECT_THAT(ladders[0].rungs, testing::ElementsAre("oracle, all in view", "two_layers"));
+    const auto failure = [](std::string text, const std::string& from, const std::string& to) {
+        text.replace(text.find(from), from.size(), to);
+        return message_of<ConfigError>([&] { parse(text); });
+    };
+    EXPECT_THAT(failure(experiment_text, "in view\", \"two_layers", "in view\", \"two_layres"),
+                AllOf(HasSubstr("e.toml:8"), HasSubstr("did you mean 'two_layers'?")));
+    EXPECT_THAT(failure(experiment_text, "plane = \"ao\"", "plane = \"total\""), HasSubstr("is not compared"));
+    EXPECT_THAT(failure(experiment_text, "oracle = [0]", "oracle = [1]"), HasSubstr("oracle, all in view"));
+    EXPECT_THAT(failure(experiment_text, "plane = \"ao\"\nrungs", "plane = \"ao\"\npaths = true\nrungs"),
+                HasSubstr("neither a method nor an oracle"))
+        << "oracles have no paths";
+}
+
+// Two rungs over three views: what the second adds is 0.05, 0.1 and 0.15.
+RunResults results_of_rungs() {
+    RunResults results = sample_results();
+    results.rows.clear();
+    results.experiment.scenes.emplace_back().scene = "cornell";
+    const std::vector<std::string> views = {"front", "left", "right"};
+    for (std::size_t i = 0; i < views.size(); ++i) {
+        results.rows.push_back(sample_row(views[i], "one", 0.1, 4.0));
+        results.rows.push_back(sample_row(views[i], "two", 0.15 + 0.05 * static_cast<double>(i), 1.0));
+    }
+    return results;
+}
+
+TEST(Ladder, SaysWhatEachRungAddsWithItsIntervalAndTheTimeItSaves) {
+    const RunResults results = results_of_rungs();
+    const auto waterfalls = climb({{"visibility", "ao", {"one", "two"}, false}}, results);
+    ASSERT_EQ(waterfalls.size(), 1u);
+    const auto& bars = waterfalls[0].bars;
+    ASSERT_EQ(bars.size(), 2u);
+    EXPECT_DOUBLE_EQ(bars[0].from, 0.0) << "the truth has no error";
+    EXPECT_NEAR(bars[0].to, 0.1, 1e-12);
+    EXPECT_NEAR(bars[1].from, 0.1, 1e-12);
+    EXPECT_NEAR(bars[1].to, 0.2, 1e-12);
+    // Mean 0.1, standard deviation 0.05 of three: 0.05 / sqrt(3) times Student's 4.303 (two degrees of freedom, 97.5
+    // %).
+    EXPECT_NEAR(bars[1].change_upper, 0.1 + 4.3027 * 0.05 / std::sqrt(3.0), 1e-4);
+    EXPECT_EQ(bars[1].note, "saves 3 ms");
+    EXPECT_THAT(print_waterfalls(waterfalls), AllOf(HasSubstr("<svg"), HasSubstr("visibility")));
+    EXPECT_THAT(print_waterfall_table(waterfalls), AllOf(HasSubstr("+0.1 ["), HasSubstr("saves 3 ms")));
+}
+
+TEST(Ladder, IsLeftOutWhereARungWasNotMeasured) {
+    RunResults results = results_of_rungs();
+    for (ResultRow& row : results.rows) row.measured = row.method == "one";
+    EXPECT_TRUE(climb({{"visibility", "ao", {"one", "two"}, false}}, results).empty());
+}
+
+}  // namespace
+}  // namespace plumb
