@@ -75,10 +75,19 @@ function slider(parent, label, { min, max, step, value, say }, onInput) {
     words.textContent = say(Number(box.value));
     box.setAttribute("aria-valuetext", words.textContent);
   };
-  box.addEventListener("input", () => { tell(); onInput(Number(box.value)); });
+  box.addEventListener("input", () => {
+    tell();
+    onInput(Number(box.value));
+  });
   parent.append(element("label", {}, label, box, words));
   tell();
-  return { box, set(number) { box.value = number; tell(); } };
+  return {
+    box,
+    set(number) {
+      box.value = number;
+      tell();
+    }
+  };
 }
 
 function button(text, onClick, properties = {}) {
@@ -102,6 +111,9 @@ function oncePerFrame(draw) {
   return () => {
     if (waiting) return;
     waiting = true;
-    requestAnimationFrame(() => { waiting = false; draw(); });
+    requestAnimationFrame(() => {
+      waiting = false;
+      draw();
+    });
   };
 }

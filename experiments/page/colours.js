@@ -13,14 +13,19 @@ const rgbOf = (hexadecimal) => [1, 3, 5].map((from) => parseInt(hexadecimal.slic
 function colourTable(stops) {
   const size = 1024, table = new Uint8ClampedArray(3 * size), colours = stops.map(rgbOf);
   for (let i = 0; i < size; ++i) {
-    const position = (i / (size - 1)) * (colours.length - 1), index = Math.min(Math.floor(position), colours.length - 2);
+    const position = (i / (size - 1)) * (colours.length - 1),
+          index = Math.min(Math.floor(position), colours.length - 2);
     for (let c = 0; c < 3; ++c) {
-      table[3 * i + c] = Math.round(colours[index][c] + (colours[index + 1][c] - colours[index][c]) * (position - index));
+      table[3 * i + c] =
+          Math.round(colours[index][c] + (colours[index + 1][c] - colours[index][c]) * (position - index));
     }
   }
   return table;
 }
-const colourTables = { error: colourTable(data.colour_maps.error), signed: colourTable(data.colour_maps.signed) };
+const colourTables = {
+  error: colourTable(data.colour_maps.error),
+  signed: colourTable(data.colour_maps.signed)
+};
 const gradientOf = (map) => `linear-gradient(to right, ${data.colour_maps[map].join(", ")})`;
 
 const notANumber = [255, 0, 255];  // magenta, which no map contains
@@ -43,7 +48,8 @@ function toneOf(plane, display, exposure) {
     return (value) => (Number.isFinite(value) && value > 0 ? 255 * within(1 - 0.85 * (value - nearest) / range) : 0);
   }
   if (display === "scaled vectors") {
-    const largest = plane.values.reduce((most, value) => (Number.isFinite(value) ? Math.max(most, Math.abs(value)) : most), 0);
+    const largest =
+        plane.values.reduce((most, value) => (Number.isFinite(value) ? Math.max(most, Math.abs(value)) : most), 0);
     return (value) => 255 * within(0.5 * value / (largest || 1) + 0.5);
   }
   throw new Error(`no way to show a plane as '${display}'`);
@@ -71,7 +77,9 @@ function pictureCanvas(plane, display, exposure) {
       }
       const value = plane.values[(plane.channels === 1 ? 0 : c) * plane.pixels + i];
       if (Number.isNaN(value)) {
-        notANumber.forEach((level, channel) => { colours[place + channel] = level; });
+        notANumber.forEach((level, channel) => {
+          colours[place + channel] = level;
+        });
         return;
       }
       colours[place + c] = tone(value);

@@ -20,7 +20,8 @@ class PaneGroup {
     for (const pane of panes) {
       pane.canvas = element("canvas", { tabIndex: 0 });
       pane.canvas.setAttribute("role", "img");
-      pane.canvas.setAttribute("aria-label", `${pane.title}. Plus and minus zoom, arrows move, shift and arrows choose a pixel`);
+      pane.canvas.setAttribute(
+          "aria-label", `${pane.title}. Plus and minus zoom, arrows move, shift and arrows choose a pixel`);
       this.listen(pane.canvas);
       pane.caption = element("figcaption", {}, pane.title, " ", element("span", { textContent: pane.note ?? "" }));
       pane.figure = element("figure", {}, pane.canvas, pane.caption);
@@ -34,14 +35,18 @@ class PaneGroup {
 
   // Buttons for those without wheel, keyboard or two fingers.
   zoomControls() {
-    const group = element("span", { className: "buttons" },
-      button("\u2212", () => this.zoomBy(0.5), { ariaLabel: "zoom out" }), button("+", () => this.zoomBy(2), { ariaLabel: "zoom in" }),
-      button("whole", () => this.reset(), { ariaLabel: "show the whole picture" }));
+    const group =
+        element("span", { className: "buttons" }, button("\u2212", () => this.zoomBy(0.5), { ariaLabel: "zoom out" }),
+            button("+", () => this.zoomBy(2), { ariaLabel: "zoom in" }),
+            button("whole", () => this.reset(), { ariaLabel: "show the whole picture" }));
     group.setAttribute("role", "group");
     return group;
   }
 
-  reset() { Object.assign(this, { zoom: 1, x: 0.5, y: 0.5 }); this.moved(); }
+  reset() {
+    Object.assign(this, { zoom: 1, x: 0.5, y: 0.5 });
+    this.moved();
+  }
 
   // Keeps the place (u, v) of the canvas, fractions of its size, where it is.
   zoomBy(factor, u = 0.5, v = 0.5) {
@@ -52,7 +57,11 @@ class PaneGroup {
     this.moved();
   }
 
-  panBy(u, v) { this.x -= u / this.zoom; this.y -= v / this.zoom; this.moved(); }
+  panBy(u, v) {
+    this.x -= u / this.zoom;
+    this.y -= v / this.zoom;
+    this.moved();
+  }
 
   moved() {
     const half = 0.5 / this.zoom;
@@ -87,7 +96,8 @@ class PaneGroup {
     const image = this.panes[0]?.image;
     if (!image) return;
     const [width, height] = sizeOf(image);
-    this.setProbe(Math.floor((this.x + (u - 0.5) / this.zoom) * width), Math.floor((this.y + (v - 0.5) / this.zoom) * height), false);
+    this.setProbe(Math.floor((this.x + (u - 0.5) / this.zoom) * width),
+        Math.floor((this.y + (v - 0.5) / this.zoom) * height), false);
   }
 
   listen(canvas) {
@@ -104,7 +114,8 @@ class PaneGroup {
     }
     // Two fingers zoom the picture, not the page; one finger scrolls the page unless the picture is zoomed.
     canvas.addEventListener("touchmove", (event) => {
-      if (event.touches.length > 1 || this.zoom > 1 || [...this.pointers.values()].some((pointer) => pointer.onSplit)) event.preventDefault();
+      if (event.touches.length > 1 || this.zoom > 1 || [...this.pointers.values()].some((pointer) => pointer.onSplit))
+        event.preventDefault();
     }, { passive: false });
     canvas.addEventListener("wheel", (event) => {
       if (!event.ctrlKey && document.activeElement !== canvas) return;  // the page scrolls
@@ -137,7 +148,10 @@ class PaneGroup {
     Object.assign(pointer, { u, v });
   }
 
-  setSplit(fraction) { this.split = Math.min(Math.max(fraction, 0), 1); this.update(); }
+  setSplit(fraction) {
+    this.split = Math.min(Math.max(fraction, 0), 1);
+    this.update();
+  }
 
   keyPressed(event) {
     if (event.ctrlKey || event.altKey || event.metaKey) return;
@@ -145,11 +159,16 @@ class PaneGroup {
     if (step && event.shiftKey) {
       const [width, height] = sizeOf(this.panes[0].image), from = this.probe ?? { x: width >> 1, y: height >> 1 };
       this.setProbe(from.x + step[0], from.y + step[1]);
-    } else if (step) this.panBy(-step[0] / 8, -step[1] / 8);
-    else if (event.key === "+" || event.key === "=") this.zoomBy(2);
-    else if (event.key === "-") this.zoomBy(0.5);
-    else if (event.key === "0") this.reset();
-    else return;
+    } else if (step)
+      this.panBy(-step[0] / 8, -step[1] / 8);
+    else if (event.key === "+" || event.key === "=")
+      this.zoomBy(2);
+    else if (event.key === "-")
+      this.zoomBy(0.5);
+    else if (event.key === "0")
+      this.reset();
+    else
+      return;
     event.preventDefault();
   }
 
@@ -162,7 +181,10 @@ class PaneGroup {
   drawPane({ canvas, image, under }) {
     const [width, height] = sizeOf(image), ratio = window.devicePixelRatio || 1;
     canvas.style.aspectRatio = `${width} / ${height}`;
-    const seen = { width: Math.max(1, Math.round(canvas.clientWidth * ratio)), height: Math.max(1, Math.round(canvas.clientHeight * ratio)) };
+    const seen = {
+      width: Math.max(1, Math.round(canvas.clientWidth * ratio)),
+      height: Math.max(1, Math.round(canvas.clientHeight * ratio))
+    };
     if (canvas.width !== seen.width || canvas.height !== seen.height) Object.assign(canvas, seen);
     const context = canvas.getContext("2d"), scale = (seen.width * this.zoom) / width;
     const left = seen.width / 2 - this.x * width * scale, top = seen.height / 2 - this.y * height * scale;

@@ -6,7 +6,8 @@
 const frameLine = {
   id: "frameLine",
   afterDatasetsDraw(chart) {
-    const x = chart.scales.x.getPixelForValue(chart.options.plugins.frameLine.time), { ctx: context, chartArea: area } = chart;
+    const x = chart.scales.x.getPixelForValue(chart.options.plugins.frameLine.time),
+          { ctx: context, chartArea: area } = chart;
     context.save();
     context.strokeStyle = styleOf("--accent");
     context.lineWidth = 2;
@@ -24,7 +25,7 @@ function drawPaths() {
     section.hidden = true;
     return;
   }
-  const state = { path: null, frames: [], shown: new Set(), frame: 0, playing: false, request: 0 };
+  const state = { path: null, shown: new Set(), frame: 0, playing: false, request: 0 };
   const choice = byId("path-controls"), player = byId("path-player");
   const nameOf = (path) => `${path.scene} / ${path.path}`;
   const name = select(choice, "Path", distinct(data.paths.map(nameOf)), nameChanged);
@@ -34,7 +35,10 @@ function drawPaths() {
   const back = button("\u2039", () => show(state.frame - 1), { ariaLabel: "frame before" });
   const next = button("\u203a", () => show(state.frame + 1), { ariaLabel: "next frame" });
   player.append(element("span", { className: "buttons" }, play, back, next));
-  const scrub = slider(player, "Frame", { min: 0, max: 1, step: 1, value: 0, say: sayFrame }, (frame) => { stop(); show(frame); });
+  const scrub = slider(player, "Frame", { min: 0, max: 1, step: 1, value: 0, say: sayFrame }, (frame) => {
+    stop();
+    show(frame);
+  });
   const speed = select(player, "Speed", ["1", "1/2", "1/4", "1/8"], () => {});
   const group = new PaneGroup(byId("path-pictures"));
   player.append(group.zoomControls());
@@ -54,11 +58,14 @@ function drawPaths() {
   function pathChanged() {
     stop();
     state.path = data.paths.find((path) => nameOf(path) === name.value && subjectOf(path) === subject.value);
-    state.frames = state.path.strips.map(() => null);
-    const methods = distinct(state.path.strips.filter((strip) => strip.kind === "method").map((strip) => strip.label)).slice(0, isNarrow() ? 1 : 2);
+    const methods = distinct(state.path.strips.filter((strip) => strip.kind === "method").map((strip) => strip.label))
+                        .slice(0, isNarrow() ? 1 : 2);
     state.shown = new Set(state.path.strips.filter((strip) => strip.kind === "truth" || methods.includes(strip.label)));
     scrub.box.max = lengthOf() - 1;
-    byId("path-note").textContent = `${state.path.exposure_note ? `${state.path.exposure_note}; ` : ""}error maps: |difference| averaged over channels, from 0 (dark) to ${short(state.path.error_scale)} and more (bright). Frames are JPEG pictures to look at; the figures come from the float frames.`;
+    const exposure = state.path.exposure_note ? `${state.path.exposure_note}; ` : "";
+    byId("path-note").textContent = `${exposure}error maps: |difference| averaged over channels, from 0 (dark) to ` +
+        `${short(state.path.error_scale)} and more (bright). Frames are JPEG pictures to look at; the figures come ` +
+        "from the float frames.";
     arrange();
     followed();
     show(Math.min(state.frame, lengthOf() - 1));
@@ -84,12 +91,19 @@ function drawPaths() {
     const upper = strips.filter((strip) => strip.kind !== "error");
     byId("path-pictures").style.setProperty("--columns", Math.max(upper.length, 1));
     section.setAttribute("aria-busy", "true");
-    await Promise.all(strips.map(async (strip) => { strip.images ??= await framesOf(strip); }));
+    await Promise.all(strips.map(async (strip) => {
+      strip.images ??= await framesOf(strip);
+    }));
     if (request !== state.request) return;  // another choice was made meanwhile
     section.removeAttribute("aria-busy");
     group.setPanes(strips.map((strip) => {
       const column = upper.findIndex((other) => other.label === strip.label) + 1;
-      return { title: titleOf(strip), strip, image: null, ...(column > 0 ? { column, row: strip.kind === "error" ? 2 : 1 } : {}) };
+      return {
+        title: titleOf(strip),
+        strip,
+        image: null,
+        ...(column > 0 ? { column, row: strip.kind === "error" ? 2 : 1 } : {})
+      };
     }));
     show(state.frame);
   }
@@ -101,7 +115,9 @@ function drawPaths() {
     for (const pane of group.panes) {
       const { strip } = pane, error = strip.rmse?.[state.frame], flicker = strip.flicker?.[state.frame];
       pane.image = strip.images[state.frame];
-      pane.caption.querySelector("span").textContent = [isNumber(error) ? `RMSE ${short(error)}` : "", isNumber(flicker) ? `flicker ${short(flicker)}` : ""].filter(Boolean).join(", ");
+      pane.caption.querySelector("span").textContent = [
+        isNumber(error) ? `RMSE ${short(error)}` : "", isNumber(flicker) ? `flicker ${short(flicker)}` : ""
+      ].filter(Boolean).join(", ");
     }
     group.update();
     if (chart) {
@@ -134,17 +150,49 @@ function drawPaths() {
   function followed() {
     const key = measure.value === "RMSE" ? "rmse" : "flicker", ink = styleOf("--ink"), line = styleOf("--line");
     const methods = state.path.strips.filter((strip) => strip.kind === "method");
-    const axis = (text) => ({ type: "linear", title: { display: true, text, color: ink }, grid: { color: line }, ticks: { color: ink, callback: (value) => short(value) } });
+    const axis = (text) => ({
+      type: "linear",
+      title: { display: true, text, color: ink },
+      grid: { color: line },
+      ticks: { color: ink, callback: (value) => short(value) }
+    });
     const options = {
-      animation: false, maintainAspectRatio: false, responsive: true, spanGaps: false,
-      scales: { x: { ...axis("seconds"), max: timeOf(lengthOf() - 1), min: 0 }, y: { ...axis(measure.value), beginAtZero: true } },
+      animation: false,
+      maintainAspectRatio: false,
+      responsive: true,
+      spanGaps: false,
+      scales: {
+        x: {...axis("seconds"), max: timeOf(lengthOf() - 1), min: 0 },
+        y: {...axis(measure.value), beginAtZero: true }
+      },
       interaction: { mode: "nearest", axis: "x", intersect: false },
-      onClick: (event, active) => { if (active.length > 0) { stop(); show(active[0].index); } },
-      plugins: { frameLine: { time: timeOf(state.frame) }, legend: { labels: { color: ink, usePointStyle: true } },
-        tooltip: { callbacks: { title: ([item]) => `frame ${item.dataIndex + 1}`, label: ({ dataset, raw }) => `${dataset.label}: ${short(raw.y)}` } } },
+      onClick: (event, active) => {
+        if (active.length > 0) {
+          stop();
+          show(active[0].index);
+        }
+      },
+      plugins: {
+        frameLine: { time: timeOf(state.frame) },
+        legend: { labels: { color: ink, usePointStyle: true } },
+        tooltip: {
+          callbacks: {
+            title: ([item]) => `frame ${item.dataIndex + 1}`,
+            label: ({ dataset, raw }) => `${dataset.label}: ${short(raw.y)}`
+          }
+        }
+      },
     };
-    const datasets = methods.map((strip, index) => ({ label: strip.label, data: (strip[key] ?? []).map((y, frame) => ({ x: timeOf(frame), y: y ?? NaN })),
-      showLine: true, borderColor: cycled(methodColours, index), backgroundColor: cycled(methodColours, index), pointStyle: cycled(markers, index), pointRadius: 2.5, borderWidth: 1.5 }));
+    const datasets = methods.map((strip, index) => ({
+      label: strip.label,
+      data: (strip[key] ?? []).map((y, frame) => ({ x: timeOf(frame), y: y ?? NaN })),
+      showLine: true,
+      borderColor: cycled(methodColours, index),
+      backgroundColor: cycled(methodColours, index),
+      pointStyle: cycled(markers, index),
+      pointRadius: 2.5,
+      borderWidth: 1.5
+    }));
     chart?.destroy();
     chart = new Chart(byId("path-chart"), { type: "scatter", data: { datasets }, options, plugins: [frameLine] });
   }

@@ -21,9 +21,12 @@ const codeValues = (() => {
   const values = new Float32Array(1 << 15);
   for (let code = 0; code < values.length; ++code) {
     const exponent = (code >> 9) & 31, fraction = code & 511, sign = code >> 14 ? -1 : 1;
-    if (exponent === 31) values[code] = fraction ? NaN : sign * Infinity;
-    else if (exponent === 0) values[code] = sign * fraction * 2 ** -23;
-    else values[code] = sign * (1 + fraction / 512) * 2 ** (exponent - 15);
+    if (exponent === 31)
+      values[code] = fraction ? NaN : sign * Infinity;
+    else if (exponent === 0)
+      values[code] = sign * fraction * 2 ** -23;
+    else
+      values[code] = sign * (1 + fraction / 512) * 2 ** (exponent - 15);
   }
   return values;
 })();
@@ -35,7 +38,8 @@ class Plane {
     this.values = new Float32Array(this.pixels * channels);
   }
   at(x, y) {
-    return Array.from({ length: this.channels }, (_, channel) => this.values[channel * this.pixels + y * this.width + x]);
+    return Array.from(
+        { length: this.channels }, (_, channel) => this.values[channel * this.pixels + y * this.width + x]);
   }
 }
 
@@ -55,13 +59,18 @@ async function unpackPlane(bytes) {
         const bits = (folded[place] << 8) | folded[all + place];
         missed[i] += (bits >> 1) ^ -(bits & 1);
         let predicted = 0;
-        if (x === 0) predicted = y === 0 ? 0 : codes[i - width];
-        else if (y === 0) predicted = codes[i - 1];
+        if (x === 0)
+          predicted = y === 0 ? 0 : codes[i - width];
+        else if (y === 0)
+          predicted = codes[i - 1];
         else {
           const left = codes[i - 1], above = codes[i - width], corner = codes[i - width - 1];
-          if (corner >= Math.max(left, above)) predicted = Math.min(left, above);
-          else if (corner <= Math.min(left, above)) predicted = Math.max(left, above);
-          else predicted = left + above - corner;
+          if (corner >= Math.max(left, above))
+            predicted = Math.min(left, above);
+          else if (corner <= Math.min(left, above))
+            predicted = Math.max(left, above);
+          else
+            predicted = left + above - corner;
         }
         codes[i] = predicted + missed[i];
         plane.values[place] = codeValues[codes[i] & 32767] * factor;
@@ -88,7 +97,8 @@ const errorKinds = {
   "absolute": { of: (value, truth) => Math.abs(value - truth), words: "|difference|, averaged over channels" },
   "signed": { of: (value, truth) => value - truth, signed: true, words: "method minus truth, averaged over channels" },
   "relative": {
-    of: (value, truth) => Math.abs(value - truth) / (Math.abs(truth) + 0.01), scale: 1,
+    of: (value, truth) => Math.abs(value - truth) / (Math.abs(truth) + 0.01),
+    scale: 1,
     words: "|difference| / (|truth| + 0.01), averaged over channels",
   },
 };

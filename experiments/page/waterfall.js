@@ -31,7 +31,9 @@ function drawWaterfalls() {
 
   function describe(bar) {
     const change = bar.to - bar.from, sign = change >= 0 ? "+" : "\u2212";
-    const lines = [`${sign}${short(Math.abs(change))}${isNumber(bar.lower) ? ` [${short(bar.lower)}, ${short(bar.upper)}]` : ""}: from ${short(bar.from)} to ${short(bar.to)}`];
+    const lines = [`${sign}${short(Math.abs(change))}${
+        isNumber(bar.lower) ? ` [${short(bar.lower)}, ${short(bar.upper)}]` :
+                              ""}: from ${short(bar.from)} to ${short(bar.to)}`];
     return bar.note ? [...lines, bar.note] : lines;
   }
 
@@ -41,20 +43,47 @@ function drawWaterfalls() {
     const adds = methodColours[1], takesAway = methodColours[2];
     const colours = bars.map((bar) => (bar.to >= bar.from ? adds : takesAway));
     const options = {
-      indexAxis: "y", animation: false, maintainAspectRatio: false, responsive: true,
-      scales: { x: { title: { display: true, text: waterfall.axis, color: ink }, grid: { color: line }, ticks: { color: ink, callback: (value) => short(value) } },
-        y: { grid: { display: false }, ticks: { color: ink, autoSkip: false } } },
-      plugins: { stepWhiskers: { bars }, legend: { display: false }, tooltip: { callbacks: { label: ({ dataIndex }) => describe(bars[dataIndex]) } } },
+      indexAxis: "y",
+      animation: false,
+      maintainAspectRatio: false,
+      responsive: true,
+      scales: {
+        x: {
+          title: { display: true, text: waterfall.axis, color: ink },
+          grid: { color: line },
+          ticks: { color: ink, callback: (value) => short(value) }
+        },
+        y: { grid: { display: false }, ticks: { color: ink, autoSkip: false } }
+      },
+      plugins: {
+        stepWhiskers: { bars },
+        legend: { display: false },
+        tooltip: { callbacks: { label: ({ dataIndex }) => describe(bars[dataIndex]) } }
+      },
     };
     byId("waterfall").parentElement.style.height = `${4 + 2 * bars.length}rem`;
     chart?.destroy();
-    chart = new Chart(byId("waterfall"), { type: "bar", options, plugins: [stepWhiskers],
-      data: { labels: bars.map((bar) => bar.label), datasets: [{ data: bars.map((bar) => [bar.from, bar.to]), backgroundColor: colours, borderSkipped: false, minBarLength: 2 }] } });
-    const head = element("tr", {}, ...["rung", waterfall.axis, ""].map((title) => element("th", { textContent: title, scope: "col" })));
+    chart = new Chart(byId("waterfall"), {
+      type: "bar",
+      options,
+      plugins: [stepWhiskers],
+      data: {
+        labels: bars.map((bar) => bar.label),
+        datasets: [{
+          data: bars.map((bar) => [bar.from, bar.to]),
+          backgroundColor: colours,
+          borderSkipped: false,
+          minBarLength: 2
+        }]
+      }
+    });
+    const head = element(
+        "tr", {}, ...["rung", waterfall.axis, ""].map((title) => element("th", { textContent: title, scope: "col" })));
     byId("waterfall-table").tHead.replaceChildren(head);
     byId("waterfall-table").tBodies[0].replaceChildren(...bars.map((bar) => {
       const [change, note] = describe(bar);
-      return element("tr", {}, element("th", { textContent: bar.label, scope: "row" }), element("td", { textContent: change }), element("td", { textContent: note ?? "" }));
+      return element("tr", {}, element("th", { textContent: bar.label, scope: "row" }),
+          element("td", { textContent: change }), element("td", { textContent: note ?? "" }));
     }));
   }
   followColourScheme(redraw);
