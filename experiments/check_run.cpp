@@ -193,7 +193,7 @@ CalibrationResults run_calibration(const CheckFile& check, const SceneFinder& fi
             if (!failed_cells.empty())
                 throw ConfigError(fmt::format("nothing can be calibrated:\n  {}", fmt::join(failed_cells, "\n  ")));
             machine = fmt::format("{}, {} cores, {}, {}", rows.system.cpu, rows.system.worker_threads, rows.gl_renderer,
-                                  calibration.loaded ? "loaded" : "idle");
+                                  calibration.loaded ? "load added" : "no load added");
         }
     }
     results.set.thresholds = calibrate(thresholds, values, calibration.add);

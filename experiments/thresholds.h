@@ -62,7 +62,7 @@ struct Threshold {
 
 // Where and when the limits were calibrated.
 struct CalibrationNote {
-    std::vector<std::string> machines;  // "2 cores of ..., llvmpipe (LLVM 15)", with the kind of load
+    std::vector<std::string> machines;  // "10 runs: CPU, 2 cores, llvmpipe (LLVM 15...), no load added"
     std::string date;                   // of the last one
     int workload = 0;                   // version of the calibrating workload that costs are told by
 };

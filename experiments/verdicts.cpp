@@ -87,6 +87,7 @@ Verdict judge(const Threshold& threshold, ThresholdValue value) {
 std::vector<Verdict> judge_all(const std::vector<Threshold>& thresholds, const std::vector<ResultRow>& rows,
                                const std::vector<CostRatio>& costs) {
     std::vector<Verdict> verdicts;
+    verdicts.reserve(thresholds.size());
     for (const Threshold& threshold : thresholds)
         verdicts.push_back(judge(threshold, value_of(threshold, rows, costs)));
     return verdicts;
