@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "experiments/packed_plane.h"
 #include "experiments/path_pictures.h"
 #include "frames/atomic_file.h"
@@ -41,14 +43,14 @@ inline PictureSet sample_pictures(const std::filesystem::path& folder, const std
     set.scene = "cornell", set.view = view, set.plane = "total";
     set.error_scale = 0.4, set.exposure = 0.5f;
     const auto add = [&](const std::string& label, const std::string& kind, const Image& image) {
-        const std::string stem = "pictures/" + view + "." + label;
+        const std::string stem = fmt::format("pictures/{}.{}", view, label);
         write_text_atomically(folder / (stem + ".plane"), pack_plane(image));
         set.images.push_back({label, kind, stem + ".png", "a note", stem + ".plane"});
     };
     add("truth", "truth", sample_truth());
     for (const std::string method : {"one", "two"}) {
         add(method, "method", sample_image(method));
-        set.images.push_back({method, "error", "pictures/" + view + "." + method + ".error.png", "", ""});
+        set.images.push_back({method, "error", fmt::format("pictures/{}.{}.error.png", view, method), "", ""});
     }
     return set;
 }
@@ -56,7 +58,7 @@ inline PictureSet sample_pictures(const std::filesystem::path& folder, const std
 // Frame i of the truth is 0.2 i everywhere; `one` is 0.1 more, `two` 0.02.
 inline PathPictures sample_path(const std::filesystem::path& folder) {
     std::vector<Image> images;
-    images.reserve(3 * sample_frames);
+    images.reserve(std::size_t{3} * sample_frames);  // pointers into it stay
     std::vector<const Image*> truth;
     std::vector<PathImages> methods(2);
     methods[0].label = "one", methods[1].label = "two";
