@@ -42,7 +42,8 @@ Accumulation::Accumulation(int width, int height, const EstimationPlan& plan, bo
     rounding_ = 0x1.8p52 * quantum_;
 }
 
-void Accumulation::add(const SampleBatch& samples, int count, const BatchEstimate& estimate) {
+void Accumulation::add(const SampleBatch& samples, const VertexBatch& starts, const BatchEstimate& estimate) {
+    const int count = starts.count;
     if (ao_ >= 0) {
         for (int i = 0; i < count; ++i) {
             sums(samples.pixel[i], samples.half[i])[ao_] += rounded_visibility(estimate.ambient_visibility[i]);
@@ -51,9 +52,9 @@ void Accumulation::add(const SampleBatch& samples, int count, const BatchEstimat
     if (channels_ == (ao_ >= 0 ? 1u : 0u)) return;
     for (int i = 0; i < count; ++i) {
         double* sum = sums(samples.pixel[i], samples.half[i]);
-        if (emission_ >= 0) add_colour(sum + emission_, samples.emission.get(i));
+        if (emission_ >= 0) add_colour(sum + emission_, starts.emission.get(i));
         if (reflection_ >= 0) add_colour(sum + reflection_, estimate.reflection.get(i));
-        const glm::vec3 albedo = samples.albedo.get(i);
+        const glm::vec3 albedo = starts.albedo.get(i);
         if (direct_ >= 0) add_colour(sum + direct_, albedo * estimate.radiance[0].get(i));
         if (indirect_ < 0) continue;
         glm::vec3 incoming(0.0f);

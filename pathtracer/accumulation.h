@@ -32,11 +32,18 @@ struct ExactParts {
     std::vector<glm::vec3> emission, direct;
 };
 
-// Which samples a batch of paths belongs to, and what multiplies what they found.
+// Which samples a batch of paths, or of rays, belongs to.
 struct SampleBatch {
     Lanes<std::uint32_t> pixel;
     Lanes<std::uint8_t> half;  // 0: A, 1: B
-    VectorLanes albedo, emission;
+
+    // Lanes `begin` to end - 1 become consecutive samples of a pixel, the first of which has an even or odd number.
+    void fill(int begin, int end, std::uint32_t of_pixel, int first_sample) {
+        pixel.fill(begin, end, of_pixel);
+        for (int i = 0; i < whole_groups(end - begin); ++i) {
+            half[begin + i] = static_cast<std::uint8_t>((first_sample + i) & 1);
+        }
+    }
 };
 
 class Accumulation {
@@ -45,9 +52,9 @@ public:
     // scene; sums stay exact up to two million times it.
     Accumulation(int width, int height, const EstimationPlan& plan, bool emission_is_sampled, double light_level);
 
-    // Adds the first `count` paths of a batch. `estimate` has to be that of the plan. Batches that are added at the
-    // same time must not share pixels.
-    void add(const SampleBatch& samples, int count, const BatchEstimate& estimate);
+    // Adds what the paths that begin at `starts` found. `estimate` has to be that of the plan. Batches that are added
+    // at the same time must not share pixels.
+    void add(const SampleBatch& samples, const VertexBatch& starts, const BatchEstimate& estimate);
     // Adds a sample that met nothing: open sky.
     void add_background(std::size_t pixel, int half, const glm::vec3& emission);
     // Adds sums of the same plan, such as another shard's.

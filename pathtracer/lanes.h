@@ -1,7 +1,6 @@
 // Values of many paths side by side (structure of arrays), so that the compiler computes several at once.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -9,9 +8,14 @@
 
 namespace plumb {
 
-// How many paths are followed together: enough to keep packets of sixteen shadow rays full when some paths have ended,
-// few enough for their whole state to stay in the first-level cache.
-constexpr int most_lanes = 64;
+// How many paths are followed together: enough to keep packets of sixteen rays full when many paths have ended, few
+// enough for their whole state to stay in the nearest caches.
+constexpr int most_lanes = 128;
+
+// What a vector register holds. Loops of plain arithmetic run to the end of the last group that is in use, lanes
+// without a path included: what they compute there nobody reads, and none is left over to be computed by itself.
+constexpr int lane_group = 8;
+constexpr int whole_groups(int count) { return (count + lane_group - 1) & -lane_group; }
 
 // For functions that loops over lanes call: a call that stays a call is not computed several at once.
 #define PLUMBLINE_INLINE inline __attribute__((always_inline))
@@ -23,8 +27,16 @@ constexpr int most_lanes = 64;
 #define PLUMBLINE_INDEPENDENT_LANES _Pragma("GCC ivdep")
 #endif
 
+// With a group more than is ever in use, for fill().
 template <typename T>
-struct alignas(64) Lanes : std::array<T, most_lanes> {};
+struct alignas(64) Lanes : std::array<T, most_lanes + lane_group> {
+    // Group by group, which costs a store each: what stood up to a group behind `end` is lost.
+    PLUMBLINE_INLINE void fill(int begin, int end, T value) {
+        for (int first = begin; first < end; first += lane_group) {
+            for (int i = 0; i < lane_group; ++i) (*this)[first + i] = value;
+        }
+    }
+};
 
 struct VectorLanes {
     Lanes<float> x, y, z;
@@ -32,10 +44,8 @@ struct VectorLanes {
     PLUMBLINE_INLINE glm::vec3 get(int lane) const { return {x[lane], y[lane], z[lane]}; }
     PLUMBLINE_INLINE void set(int lane, const glm::vec3& v) { x[lane] = v.x, y[lane] = v.y, z[lane] = v.z; }
 
-    void fill(int begin, int end, const glm::vec3& v) {
-        std::fill(x.begin() + begin, x.begin() + end, v.x);
-        std::fill(y.begin() + begin, y.begin() + end, v.y);
-        std::fill(z.begin() + begin, z.begin() + end, v.z);
+    PLUMBLINE_INLINE void fill(int begin, int end, const glm::vec3& v) {
+        x.fill(begin, end, v.x), y.fill(begin, end, v.y), z.fill(begin, end, v.z);
     }
 };
 

@@ -247,7 +247,8 @@ void LightTable::sample_extended(const VertexBatch& receivers, const Lanes<std::
     Lanes<float> area_over_probability, error, back_emits;
     Lanes<std::uint32_t> chosen;
     Lanes<float> within;
-    for (int i = 0; i < receivers.count; ++i) {
+    const int end = whole_groups(receivers.count);
+    for (int i = 0; i < end; ++i) {
         chosen[i] = static_cast<std::uint32_t>(extended_.sample(0x1p-32 * x[i]));
         const Emitter& emitter = emitters_[chosen[i]];
         a.set(i, emitter.corners.a), b.set(i, emitter.corners.b), c.set(i, emitter.corners.c);
@@ -255,10 +256,10 @@ void LightTable::sample_extended(const VertexBatch& receivers, const Lanes<std::
         area_over_probability[i] = emitter.area_over_probability, error[i] = emitter.error;
         back_emits[i] = emitter.two_sided ? 1.0f : 0.0f;
     }
-    for (int i = 0; i < receivers.count; ++i) {
+    for (int i = 0; i < end; ++i) {
         within[i] = static_cast<float>(extended_.within(0x1p-32 * x[i], chosen[i]));
     }
-    for (int i = 0; i < receivers.count; ++i) {
+    for (int i = 0; i < end; ++i) {
         const TriangleSample at =
             sample_emitting_triangle(a.get(i), b.get(i), c.get(i), normal.get(i), area_over_probability[i], error[i],
                                      back_emits[i], receivers.ray_origin.get(i), {within[i], y[i]});

@@ -6,6 +6,7 @@
 
 #include <glm/glm.hpp>
 
+#include "pathtracer/light_sample.h"
 #include "pathtracer/ray_batch.h"
 #include "pathtracer/sample_sequence.h"
 
@@ -20,14 +21,12 @@ struct SpecularVertex {
     glm::vec3 far_side{0.0f};   // where a ray that passes straight through starts
 };
 
-// The vertices at which `count` paths stand.
-struct VertexBatch {
+// The vertices at which `count` paths stand. The albedo is that of the diffuse lobe, less what the specular one takes.
+struct VertexBatch : SurfaceLanes {
     int count = 0;
     Lanes<int> path;  // which path of the batch stands here
     SampleLanes samples;
     Lanes<float> time;
-    VectorLanes ray_origin, geometric_normal, shading_normal;
-    VectorLanes albedo;      // of the diffuse lobe, already less what the specular one takes
     VectorLanes throughput;  // of the path up to here
     Lanes<std::uint8_t> is_plain;
     bool all_plain = true;
@@ -40,16 +39,21 @@ struct VertexBatch {
         each_its_path = false;
     }
 
+    // Makes lane `to` what lane `from` of `other` is, but for its specular side.
+    void set(int to, const VertexBatch& other, int from) {
+        path[to] = other.path[from];
+        samples.set(to, other.samples.get(from));
+        time[to] = other.time[from];
+        ray_origin.set(to, other.ray_origin.get(from));
+        geometric_normal.set(to, other.geometric_normal.get(from));
+        shading_normal.set(to, other.shading_normal.get(from));
+        albedo.set(to, other.albedo.get(from));
+        throughput.set(to, other.throughput.get(from));
+    }
+
     // Takes over lane `from` of `other`.
     void add(const VertexBatch& other, int from) {
-        path[count] = other.path[from];
-        samples.set(count, other.samples.get(from));
-        time[count] = other.time[from];
-        ray_origin.set(count, other.ray_origin.get(from));
-        geometric_normal.set(count, other.geometric_normal.get(from));
-        shading_normal.set(count, other.shading_normal.get(from));
-        albedo.set(count, other.albedo.get(from));
-        throughput.set(count, other.throughput.get(from));
+        set(count, other, from);
         is_plain[count] = other.is_plain[from];
         all_plain &= is_plain[count] != 0;
         if (!is_plain[count]) specular[count] = other.specular[from];
@@ -59,13 +63,13 @@ struct VertexBatch {
     // Gives lanes begin + 1 to end - 1 the vertex of lane `begin`, as paths and with samples of their own.
     void repeat(int begin, int end) {
         for (int lane = begin; lane < end; ++lane) path[lane] = lane;
-        std::fill(time.begin() + begin, time.begin() + end, time[begin]);
+        time.fill(begin, end, time[begin]);
         ray_origin.fill(begin, end, ray_origin.get(begin));
         geometric_normal.fill(begin, end, geometric_normal.get(begin));
         shading_normal.fill(begin, end, shading_normal.get(begin));
         albedo.fill(begin, end, albedo.get(begin));
         throughput.fill(begin, end, throughput.get(begin));
-        std::fill(is_plain.begin() + begin, is_plain.begin() + end, is_plain[begin]);
+        is_plain.fill(begin, end, is_plain[begin]);
         if (!is_plain[begin]) std::fill(specular.begin() + begin, specular.begin() + end, specular[begin]);
         count = end;
     }
@@ -102,21 +106,20 @@ struct ScatteredRays {
     }
 };
 
-// Shadow rays, and what each would bring.
+// Shadow rays, and the lane of the vertex that each leaves.
 struct ShadowRays {
     RayBatch rays;
-    Lanes<int> vertex;  // lane of the vertex that each leaves
-    VectorLanes light;
+    Lanes<int> vertex;
 };
 
 // Room for what is passed from step to step, so that none of it is made anew for every batch.
 struct PathWorkspace {
     VertexBatch starts, vertices, next;
+    LightLanes lights;
     ScatteredRays scattered;
     ShadowRays shadow;
     HitBatch hits;
-    Lanes<int> met;  // which rays met something
-    SurfaceLanes points;
+    MetRays met;
 };
 
 }  // namespace plumb

@@ -22,12 +22,6 @@ void add_to(VectorLanes& sum, int lane, const glm::vec3& value) {
     sum.x[lane] += value.x, sum.y[lane] += value.y, sum.z[lane] += value.z;
 }
 
-const VectorLanes unit_weight = [] {
-    VectorLanes ones;
-    ones.fill(0, most_lanes, glm::vec3(1.0f));
-    return ones;
-}();
-
 float largest(const glm::vec3& v) { return std::max(v.x, std::max(v.y, v.z)); }
 
 }  // namespace
@@ -54,6 +48,40 @@ glm::vec3 PathIntegrator::add_start(const SurfacePoint& x, const glm::vec3& dire
     return albedo;
 }
 
+void PathIntegrator::start(const RayBatch& rays, const HitBatch& hits, const MetRays& met, const SampleLanes& samples,
+                           VertexBatch& starts) const {
+    starts.clear();
+    starts.count = met.count;
+    starts.each_its_path = true;
+    scene_.surface_points(rays, hits, met, starts);
+    const int end = whole_groups(met.count);
+    PLUMBLINE_INDEPENDENT_LANES
+    for (int j = 0; j < end; ++j) {
+        starts.path[j] = j;
+        starts.samples.set(j, samples.get(met.ray[j]));
+        starts.time[j] = rays.time[met.ray[j]];
+        starts.throughput.set(j, glm::vec3(1.0f));
+    }
+    add_lobes(rays, hits, met, starts);
+}
+
+// Gives the vertices that `met` led to what they scatter with besides their diffuse lobes.
+void PathIntegrator::add_lobes(const RayBatch& rays, const HitBatch& hits, const MetRays& met,
+                               VertexBatch& vertices) const {
+    vertices.is_plain.fill(0, vertices.count, 1);
+    for (int j = 0; j < vertices.count && !scene_.all_plain(); ++j) {
+        const int i = met.ray[j];
+        if (scene_.is_plain(hits.instance[i])) continue;
+        vertices.is_plain[j] = 0;
+        vertices.all_plain = false;
+        const glm::vec3 to_viewer = -rays.direction.get(i);
+        const SurfacePoint point = scene_.surface_point(hits.get(i), rays.direction.get(i), rays.time[i]);
+        vertices.specular[j] = {point.specular, to_viewer, 2.0f * point.position - point.ray_origin};
+        const glm::vec3 specular = scene_.specular_albedo(point.specular, point.shading_normal, to_viewer);
+        vertices.albedo.set(j, vertices.albedo.get(j) * (1.0f - specular));
+    }
+}
+
 Scattering PathIntegrator::scattering(const VertexBatch& vertices, int lane, int vertex) const {
     const SpecularVertex& here = vertices.specular[lane];
     const glm::vec3 normal = vertices.shading_normal.get(lane);
@@ -63,16 +91,16 @@ Scattering PathIntegrator::scattering(const VertexBatch& vertices, int lane, int
 }
 
 // Adds to `sum` what reaches each vertex from one sampled light with an extent and from one without.
-void PathIntegrator::next_event(const VertexBatch& vertices, int vertex, Start start, ShadowRays& shadow,
+void PathIntegrator::next_event(const VertexBatch& vertices, int vertex, Start start, PathWorkspace& workspace,
                                 VectorLanes& sum, int& rays) const {
     const bool specular_start = start == Start::specular;
-    LightLanes lights;
+    LightLanes& lights = workspace.lights;
     if (lights_.has_extended_lights()) {
         Lanes<std::uint32_t> x;
         Lanes<float> y;
         sample_points(vertices.samples, vertices.count, dimension(vertex, specular_start, extended_light), x, y);
         lights_.sample_extended(vertices, x, y, lights);
-        connect(vertices, vertex, start, lights, shadow, sum, rays);
+        connect(vertices, vertex, start, lights, workspace.shadow, sum, rays);
     }
     const bool exact_already = vertex == 0 && !specular_start && plan_.exact_lights_at_first_point;
     if (lights_.lights_without_extent() > 0 && !exact_already) {
@@ -82,7 +110,7 @@ void PathIntegrator::next_event(const VertexBatch& vertices, int vertex, Start s
             lights.set(i, lights_.sample_without_extent(
                               {vertices.ray_origin.get(i), vertices.shading_normal.get(i), vertices.time[i]}, pick[i]));
         }
-        connect(vertices, vertex, start, lights, shadow, sum, rays);
+        connect(vertices, vertex, start, lights, workspace.shadow, sum, rays);
     }
 }
 
@@ -93,7 +121,7 @@ void PathIntegrator::connect(const VertexBatch& vertices, int vertex, Start star
     const float others_compete = lights_.rays_find_emitters() ? 1.0f : 0.0f;
     VectorLanes brought;
     Lanes<float> brings;
-    for (int i = 0; i < vertices.count; ++i) {
+    for (int i = 0; i < whole_groups(vertices.count); ++i) {
         const glm::vec3 direction = lights.direction.get(i);
         // Light from behind the triangle is stopped by the triangle itself, whatever the interpolated normal says.
         const float cosine = std::max(0.0f, glm::dot(vertices.shading_normal.get(i), direction));
@@ -107,31 +135,37 @@ void PathIntegrator::connect(const VertexBatch& vertices, int vertex, Start star
         brought.set(i, light);
         brings[i] = light.x + light.y + light.z;
     }
-    shadow.rays.count = 0;
-    for (int i = 0; i < vertices.count; ++i) {
-        if (!leaves_diffusely && !vertices.all_plain && !vertices.is_plain[i]) {
-            const glm::vec3 direction = lights.direction.get(i);
-            const SpecularLobeValue value = scattering(vertices, i, vertex).evaluate(direction);
-            const bool competes = others_compete > 0.0f && lights.density[i] > 0.0f;
-            const float weight = competes ? power_heuristic(lights.density[i], value.density) : 1.0f;
-            const bool open = glm::dot(vertices.geometric_normal.get(i), direction) > 0.0f;
-            float scale = open ? weight : 0.0f;
-            if (start == Start::specular && is_limited(start, vertex)) {
-                scale *= counted(start, lights.farthest[i] * glm::length(lights.shadow_ray.get(i)));
-            }
-            brought.set(i, vertices.throughput.get(i) * value.reflected * lights.radiance.get(i) * scale);
-            brings[i] = brought.x[i] + brought.y[i] + brought.z[i];
+    for (int i = 0; i < vertices.count && !leaves_diffusely && !vertices.all_plain; ++i) {
+        if (vertices.is_plain[i]) continue;
+        const glm::vec3 direction = lights.direction.get(i);
+        const SpecularLobeValue value = scattering(vertices, i, vertex).evaluate(direction);
+        const bool competes = others_compete > 0.0f && lights.density[i] > 0.0f;
+        const float weight = competes ? power_heuristic(lights.density[i], value.density) : 1.0f;
+        const bool open = glm::dot(vertices.geometric_normal.get(i), direction) > 0.0f;
+        float scale = open ? weight : 0.0f;
+        if (start == Start::specular && is_limited(start, vertex)) {
+            scale *= counted(start, lights.farthest[i] * glm::length(lights.shadow_ray.get(i)));
         }
-        if (!(brings[i] > 0.0f)) continue;
-        shadow.vertex[shadow.rays.count] = i;
-        shadow.light.set(shadow.rays.count, brought.get(i));
-        shadow.rays.add(vertices.ray_origin.get(i), lights.shadow_ray.get(i), lights.farthest[i], vertices.time[i]);
+        brought.set(i, vertices.throughput.get(i) * value.reflected * lights.radiance.get(i) * scale);
+        brings[i] = brought.x[i] + brought.y[i] + brought.z[i];
     }
-    rays += shadow.rays.count;
+    // Whether light arrives at all is anybody's guess, also the processor's: each ray is set, and the next one takes
+    // its place where it brings nothing.
+    RayBatch& shadow_rays = shadow.rays;
+    int count = 0;
+    for (int i = 0; i < vertices.count; ++i) {
+        shadow.vertex[count] = i;
+        shadow_rays.set(count, vertices.ray_origin.get(i), lights.shadow_ray.get(i), lights.farthest[i],
+                        vertices.time[i]);
+        count += brings[i] > 0.0f ? 1 : 0;
+    }
+    shadow_rays.count = count;
+    rays += count;
     VectorLanes passing;
-    scene_.transmittance(shadow.rays, passing);
-    for (int i = 0; i < shadow.rays.count; ++i) {
-        add_to(sum, vertices.path[shadow.vertex[i]], shadow.light.get(i) * passing.get(i));
+    scene_.transmittance(shadow_rays, passing);
+    for (int i = 0; i < count; ++i) {
+        const int lane = shadow.vertex[i];
+        add_to(sum, vertices.path[lane], brought.get(lane) * passing.get(i));
     }
 }
 
@@ -170,29 +204,29 @@ void PathIntegrator::scatter(const VertexBatch& vertices, int vertex, Start star
     Lanes<int> leaves;
     sample_points(vertices.samples, vertices.count, dimension(vertex, specular_start, next_direction), x, y);
     RayBatch& rays = scattered.rays;
-    int leaving = 0;
-    for (int i = 0; i < vertices.count; ++i) {
+    const int count = vertices.count, end = whole_groups(count);
+    for (int i = 0; i < end; ++i) {
         const glm::vec3 normal = vertices.shading_normal.get(i);
         const glm::vec3 direction = sample_cosine_hemisphere(normal, {x[i], y[i]});
         rays.direction.set(i, direction);
         scattered.density[i] = glm::dot(normal, direction) * glm::one_over_pi<float>();
         leaves[i] = glm::dot(vertices.geometric_normal.get(i), direction) > 0.0f ? 1 : 0;
-        leaving += leaves[i];
     }
+    const auto leaving = std::count(leaves.begin(), leaves.begin() + count, 1);
     scattered.clear();
-    if (leaving == vertices.count && (leaves_diffusely || vertices.all_plain)) {
-        rays.count = vertices.count;
+    if (leaving == count && (leaves_diffusely || vertices.all_plain)) {
         scattered.all_leave = true;
-        for (int i = 0; i < rays.count; ++i) scattered.vertex[i] = i;
-        scattered.weight = leaves_diffusely ? unit_weight : vertices.albedo;
-        rays.origin = vertices.ray_origin;
-        rays.time = vertices.time;
-        std::fill_n(rays.nearest.begin(), rays.count, positive_distance);
-        std::fill_n(rays.farthest.begin(), rays.count, infinite_distance);
+        for (int i = 0; i < end; ++i) {
+            scattered.vertex[i] = i;
+            scattered.weight.set(i, vertices.albedo.get(i));
+            rays.set(i, vertices.ray_origin.get(i), rays.direction.get(i), infinite_distance, vertices.time[i]);
+        }
+        if (leaves_diffusely) scattered.weight.fill(0, count, glm::vec3(1.0f));
+        rays.count = count;
         return;
     }
     // Rays move to lanes before those that they were drawn in, never behind.
-    for (int i = 0; i < vertices.count; ++i) {
+    for (int i = 0; i < count; ++i) {
         if (leaves_diffusely || vertices.is_plain[i]) {
             if (leaves[i] != 0) {
                 scattered.add(i, vertices.ray_origin.get(i), rays.direction.get(i), vertices.time[i],
@@ -259,52 +293,47 @@ void PathIntegrator::arrive(const VertexBatch& from, int vertex, Start start, bo
     const ScatteredRays& scattered = workspace.scattered;
     const RayBatch& rays = scattered.rays;
     const HitBatch& hits = workspace.hits;
-    const bool goes_on = vertex < plan_.bounces && (start == Start::specular || plan_.indirect);
+    MetRays& met = workspace.met;
+    met.find(rays, hits);
+    scene_.surface_points(rays, hits, met, next);
+    const int end = whole_groups(met.count);
+    PLUMBLINE_INDEPENDENT_LANES
+    for (int j = 0; j < end; ++j) {
+        const int i = met.ray[j], lane = scattered.vertex[i];
+        next.path[j] = from.path[lane];
+        next.samples.set(j, from.samples.get(lane));
+        next.time[j] = rays.time[i];
+        next.throughput.set(j, from.throughput.get(lane) * scattered.weight.get(i));
+    }
     const bool limited = is_limited(start, vertex);
-    Lanes<int>& met = workspace.met;
-    int met_count = 0;
-    for (int i = 0; i < rays.count; ++i) {
-        met[met_count] = i;
-        met_count += hits.missed(i) ? 0 : 1;
+    const auto counts = [&](int j) { return limited ? counted(start, hits.distance[met.ray[j]]) : 1.0f; };
+    for (int j = 0; j < met.count && looks_for_emitters; ++j) {
+        const glm::vec3 emission = next.emission.get(j);
+        if (emission == glm::vec3(0.0f)) continue;
+        const int i = met.ray[j];
+        const float weight = lights_.emission_weight(hits.get(i), next.geometric_normal.get(j), rays.direction.get(i),
+                                                     scattered.density[i], rays.time[i]);
+        // What a diffuse lobe gets straight from an emitter is direct light, which knows no radius.
+        const float reached = start == Start::specular ? counts(j) : 1.0f;
+        add_to(sum, next.path[j], next.throughput.get(j) * emission * (weight * reached));
     }
-    SurfaceLanes& points = workspace.points;
-    scene_.surface_points(rays, hits, met, met_count, points);
-    for (int j = 0; j < met_count; ++j) {
-        const int i = met[j], lane = scattered.vertex[i];
-        glm::vec3 throughput = from.throughput.get(lane) * scattered.weight.get(i);
-        const glm::vec3 emission = points.emission.get(j), direction = rays.direction.get(i);
-        const float counts = limited ? counted(start, hits.distance[i]) : 1.0f;
-        if (looks_for_emitters && emission != glm::vec3(0.0f)) {
-            const float weight = lights_.emission_weight(hits.get(i), points.geometric_normal.get(j), direction,
-                                                         scattered.density[i], rays.time[i]);
-            // What a diffuse lobe gets straight from an emitter is direct light, which knows no radius.
-            const float reached = start == Start::specular ? counts : 1.0f;
-            add_to(sum, from.path[lane], throughput * emission * (weight * reached));
-        }
-        if (!goes_on || !(counts > 0.0f)) continue;
-        throughput *= counts;
-        const bool plain = scene_.is_plain(hits.instance[i]);
-        glm::vec3 albedo = points.albedo.get(j);
-        if (plain && albedo == glm::vec3(0.0f)) continue;
-        if (!survives_roulette(from.samples.get(lane), vertex + 1, start, throughput)) continue;
-        const int to = next.count++;
-        next.path[to] = from.path[lane];
-        next.samples.set(to, from.samples.get(lane));
-        next.time[to] = rays.time[i];
-        next.ray_origin.set(to, points.ray_origin.get(j));
-        next.geometric_normal.set(to, points.geometric_normal.get(j));
-        next.shading_normal.set(to, points.shading_normal.get(j));
-        next.throughput.set(to, throughput);
-        next.is_plain[to] = plain;
-        next.all_plain &= plain;
-        if (!plain) {
-            next.specular[to] = {scene_.surface_point(hits.get(i), direction, rays.time[i]).specular, -direction,
-                                 glm::vec3(0.0f)};
-            albedo *=
-                1.0f - scene_.specular_albedo(next.specular[to].surface, points.shading_normal.get(j), -direction);
-        }
-        next.albedo.set(to, albedo);
+    const bool goes_on = vertex < plan_.bounces && (start == Start::specular || plan_.indirect);
+    if (!goes_on) return;
+    // Paths that go on close up.
+    int count = 0;
+    for (int j = 0; j < met.count; ++j) {
+        const float share = counts(j);
+        if (!(share > 0.0f)) continue;
+        glm::vec3 throughput = next.throughput.get(j) * share;
+        if (next.albedo.get(j) == glm::vec3(0.0f) && scene_.is_plain(hits.instance[met.ray[j]])) continue;
+        if (!survives_roulette(next.samples.get(j), vertex + 1, start, throughput)) continue;
+        if (count != j) next.set(count, next, j);
+        met.ray[count] = met.ray[j];
+        next.throughput.set(count, throughput);
+        ++count;
     }
+    next.count = met.count = count;
+    add_lobes(rays, hits, met, next);
 }
 
 void PathIntegrator::follow(const VertexBatch& starts, Start start, PathWorkspace& workspace,
@@ -317,7 +346,7 @@ void PathIntegrator::follow(const VertexBatch& starts, Start start, PathWorkspac
     for (int k = 0; vertices->count > 0; ++k) {
         const bool gathers = !diffuse_start || (k == 0 ? plan_.direct : plan_.indirect);
         VectorLanes& sum = diffuse_start ? estimate.radiance[k] : estimate.reflection;
-        if (gathers) next_event(*vertices, k, start, workspace.shadow, sum, estimate.rays);
+        if (gathers) next_event(*vertices, k, start, workspace, sum, estimate.rays);
 
         // A mirror's rays, and those that pass a pane, find emitters whatever the strategy.
         const bool looks_for_emitters = gathers && (lights_.rays_find_emitters() || scene_.has_delta_lobes());
@@ -390,7 +419,7 @@ void PathIntegrator::follow(const VertexBatch& starts, Start start, PathWorkspac
 }
 
 void PathIntegrator::estimate(const VertexBatch& starts, PathWorkspace& workspace, BatchEstimate& estimate) const {
-    std::fill_n(estimate.ambient_visibility.begin(), starts.count, 1.0f);
+    estimate.ambient_visibility.fill(0, starts.count, 1.0f);
     for (int k = 0; k <= plan_.bounces; ++k) estimate.radiance[k].fill(0, starts.count, glm::vec3(0.0f));
     estimate.reflection.fill(0, starts.count, glm::vec3(0.0f));
     estimate.rays = 0;

@@ -49,6 +49,10 @@ public:
     glm::vec3 add_start(const SurfacePoint& x, const glm::vec3& direction, const SampleIndex& sample, float time,
                         VertexBatch& batch) const;
 
+    // Makes the points that the rays in `met` found the starts of paths, the i-th of them of path i. `samples`: by ray.
+    void start(const RayBatch& rays, const HitBatch& hits, const MetRays& met, const SampleLanes& samples,
+               VertexBatch& starts) const;
+
     // Sets all of `estimate` that the plan wants, radiance for vertices 0..bounces.
     void estimate(const VertexBatch& starts, PathWorkspace& workspace, BatchEstimate& estimate) const;
 
@@ -63,7 +67,8 @@ private:
 
     // At the first vertex the specular side alone, later all lobes but what passes, which is decided before.
     Scattering scattering(const VertexBatch& vertices, int lane, int vertex) const;
-    void next_event(const VertexBatch& vertices, int vertex, Start start, ShadowRays& shadow, VectorLanes& sum,
+    void add_lobes(const RayBatch& rays, const HitBatch& hits, const MetRays& met, VertexBatch& vertices) const;
+    void next_event(const VertexBatch& vertices, int vertex, Start start, PathWorkspace& workspace, VectorLanes& sum,
                     int& rays) const;
     void connect(const VertexBatch& vertices, int vertex, Start start, const LightLanes& lights, ShadowRays& shadow,
                  VectorLanes& sum, int& rays) const;

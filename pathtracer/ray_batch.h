@@ -18,10 +18,12 @@ struct RayBatch {
     Lanes<float> nearest, farthest;
     Lanes<float> time;  // 0..1 over the scene's time span
 
+    PLUMBLINE_INLINE void set(int lane, const glm::vec3& from, const glm::vec3& towards, float reach, float when) {
+        origin.set(lane, from), direction.set(lane, towards);
+        nearest[lane] = positive_distance, farthest[lane] = reach, time[lane] = when;
+    }
     void add(const glm::vec3& from, const glm::vec3& towards, float reach, float when) {
-        origin.set(count, from), direction.set(count, towards);
-        nearest[count] = positive_distance, farthest[count] = reach, time[count] = when;
-        ++count;
+        set(count++, from, towards, reach, when);
     }
 };
 
@@ -41,9 +43,28 @@ struct HitBatch {
     }
 };
 
-// The geometry of the points that rays met, and their diffuse and emitted light.
+// The geometry of points that rays met, and their diffuse and emitted light.
 struct SurfaceLanes {
     VectorLanes ray_origin, geometric_normal, shading_normal, albedo, emission;
+};
+
+// The rays of a batch that met something, in their order.
+struct MetRays {
+    int count = 0;
+    Lanes<int> ray;
+
+    void find(const RayBatch& rays, const HitBatch& hits) {
+        count = 0;
+        for (int i = 0; i < rays.count; ++i) {
+            ray[count] = i;
+            count += hits.missed(i) ? 0 : 1;
+        }
+        complete_group();
+    }
+    // Repeats the last one to the end of its group: what loops over whole groups look up is there.
+    void complete_group() {
+        for (int i = count; i < whole_groups(count); ++i) ray[i] = ray[count - 1];
+    }
 };
 
 }  // namespace plumb

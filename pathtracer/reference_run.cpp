@@ -46,6 +46,16 @@ double light_level(const Scene& scene) {
     return level;
 }
 
+// What lies in a lane, on a surface without a specular side.
+SurfacePoint plain_point(const SurfaceLanes& surfaces, int lane) {
+    SurfacePoint point;
+    point.ray_origin = surfaces.ray_origin.get(lane);
+    point.geometric_normal = surfaces.geometric_normal.get(lane);
+    point.shading_normal = surfaces.shading_normal.get(lane);
+    point.albedo = surfaces.albedo.get(lane);
+    return point;
+}
+
 EmitterSampling strategy_of(const ReferenceSettings& settings) {
     // Rays that see a part of the scene only must not be the ones that look for light.
     return settings.oracle ? EmitterSampling::lights : settings.emitter_sampling;
@@ -60,11 +70,14 @@ struct ReferenceRun::Scratch {
     PathWorkspace workspace;
     BatchEstimate estimate;
     std::uint64_t rays = 0;
-    // Primary rays that wait to be traced, and whose they are.
+    // Rays from the camera, whose they are, and what they met.
     RayBatch primary;
-    std::array<SampleIndex, most_lanes> primary_index;
-    Lanes<std::uint32_t> primary_pixel;
-    Lanes<std::uint8_t> primary_half;
+    SampleBatch primary_samples;
+    SampleLanes primary_points;
+    Lanes<float> primary_x, primary_y;  // the pixel's upper left corner
+    HitBatch hits;
+    MetRays met;
+    SurfaceLanes surfaces;
 };
 
 ReferenceRun::ReferenceRun(const TracedScene& scene, const EnvironmentDistribution& environment, const View& view,
@@ -128,106 +141,134 @@ bool ReferenceRun::has_noise() const {
 void ReferenceRun::flush(Scratch& scratch) {
     if (scratch.starts.count == 0) return;
     integrator_.estimate(scratch.starts, scratch.workspace, scratch.estimate);
-    accumulation_.add(scratch.samples, scratch.starts.count, scratch.estimate);
+    accumulation_.add(scratch.samples, scratch.starts, scratch.estimate);
     scratch.rays += static_cast<std::uint64_t>(scratch.estimate.rays);
     scratch.starts.clear();
 }
 
-void ReferenceRun::add_centre_samples(int x, int y, int first_sample, int count, Scratch& scratch) {
-    const std::size_t pixel = pixel_index(x, y);
-    const SurfaceHit& hit = hits_[pixel];
-    if (hit.missed()) {
-        for (int sample = 0; sample < count; ++sample) accumulation_.add_background(pixel, sample & 1, {});
-        return;
-    }
-    const Ray ray = view_.pixel_ray(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
-    const SurfacePoint point = scene_.surface_point(hit, ray.direction);
+// Starts `count` paths of one pixel at `point`, which lies at its centre.
+void ReferenceRun::add_centre_samples(int x, int y, const SurfacePoint& point, const glm::vec3& direction,
+                                      int first_sample, int count, Scratch& scratch) {
     const SampleSequence sequence(settings_.seed, x, y, settings_.points);
     VertexBatch& starts = scratch.starts;
     for (int sample = first_sample; sample < first_sample + count;) {
         // As many samples of the pixel as the batch still has room for: one vertex for all.
         const int begin = starts.count, end = std::min(most_lanes, begin + first_sample + count - sample);
-        const glm::vec3 albedo = integrator_.add_start(point, ray.direction, {}, now, starts);
+        integrator_.add_start(point, direction, {}, now, starts);
         starts.repeat(begin, end);
-        std::fill(scratch.samples.pixel.begin() + begin, scratch.samples.pixel.begin() + end,
-                  static_cast<std::uint32_t>(pixel));
-        scratch.samples.albedo.fill(begin, end, albedo);
+        scratch.samples.fill(begin, end, static_cast<std::uint32_t>(pixel_index(x, y)), sample);
         sequence.start_samples(sample, end - begin, begin, starts.samples);
-        for (int lane = begin; lane < end; ++lane) {
-            scratch.samples.half[lane] = static_cast<std::uint8_t>((sample + lane - begin) & 1);
-        }
         sample += end - begin;
         if (end == most_lanes) flush(scratch);
     }
 }
 
-Ray ReferenceRun::primary_ray(int x, int y, const SampleSequence& sequence, float time) const {
-    const glm::vec2 offset = settings_.antialias ? sequence.point(PathIntegrator::pixel_dimension) : glm::vec2(0.5f);
-    const float at_x = static_cast<float>(x) + offset.x, at_y = static_cast<float>(y) + offset.y;
-    const bool pinhole = !(view_.camera().aperture_radius > 0.0f);
-    const glm::vec2 lens = pinhole ? glm::vec2(0.0f) : sample_disc(sequence.point(PathIntegrator::lens_dimension));
-    Ray ray = view_.lens_ray(at_x, at_y, lens);
-    if (settings_.view_at_shutter_opening) {
-        const Ray before = settings_.view_at_shutter_opening->lens_ray(at_x, at_y, lens);
-        ray.origin = glm::mix(before.origin, ray.origin, time);
-        ray.direction = glm::normalize(glm::mix(before.direction, ray.direction, time));
+// The pixels of a row from `left` on, as many as a batch has lanes: what they see is looked up side by side.
+void ReferenceRun::add_centre_samples(int left, int right, int y, int first_sample, int count, Scratch& scratch) {
+    RayBatch& rays = scratch.primary;
+    rays.count = 0;
+    for (int x = left; x < right; ++x) {
+        const Ray ray = view_.pixel_ray(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
+        scratch.hits.set(rays.count, hits_[pixel_index(x, y)]);
+        rays.add(ray.origin, ray.direction, infinite_distance, now);
     }
-    return ray;
-}
-
-// Traces the primary rays that wait, and starts a path where each ends.
-void ReferenceRun::add_spread_samples(Scratch& scratch) {
-    HitBatch hits;
-    const RayBatch& rays = scratch.primary;
-    scene_.intersect(rays, hits);
-    scratch.rays += static_cast<std::uint64_t>(rays.count);
-    for (int i = 0; i < rays.count; ++i) {
-        const glm::vec3 direction = rays.direction.get(i);
-        if (hits.missed(i)) {
-            accumulation_.add_background(scratch.primary_pixel[i], scratch.primary_half[i],
-                                         scene_.scene().environment_radiance(direction));
+    scratch.met.find(rays, scratch.hits);
+    scene_.surface_points(rays, scratch.hits, scratch.met, scratch.surfaces);
+    for (int x = left, j = 0; x < right; ++x) {
+        if (scratch.hits.missed(x - left)) {
+            for (int i = 0; i < count; ++i) accumulation_.add_background(pixel_index(x, y), i & 1, {});
             continue;
         }
-        const SurfacePoint point = scene_.surface_point(hits.get(i), direction, rays.time[i]);
-        const int lane = scratch.starts.count;
-        scratch.samples.pixel[lane] = scratch.primary_pixel[i];
-        scratch.samples.half[lane] = scratch.primary_half[i];
-        scratch.samples.emission.set(lane, point.emission);
-        scratch.samples.albedo.set(
-            lane, integrator_.add_start(point, direction, scratch.primary_index[i], rays.time[i], scratch.starts));
+        const SurfaceHit hit = scratch.hits.get(x - left);
+        const glm::vec3 direction = rays.direction.get(x - left);
+        const int surface = j++;
+        add_centre_samples(x, y,
+                           scene_.is_plain(hit.instance) ? plain_point(scratch.surfaces, surface)
+                                                         : scene_.surface_point(hit, direction),
+                           direction, first_sample, count, scratch);
+    }
+}
+
+// The rays that wait in `scratch.primary`: through the pixel's area, the lens and the time that the shutter is open.
+void ReferenceRun::make_primary_rays(Scratch& scratch) const {
+    RayBatch& rays = scratch.primary;
+    const int count = rays.count;
+    const SampleLanes& points = scratch.primary_points;
+    Lanes<float> x, y, lens_x, lens_y;
+    x.fill(0, count, 0.5f), y.fill(0, count, 0.5f);
+    if (settings_.antialias) sample_points(points, count, PathIntegrator::pixel_dimension, x, y);
+    const bool has_lens = view_.camera().aperture_radius > 0.0f;
+    if (has_lens) sample_points(points, count, PathIntegrator::lens_dimension, lens_x, lens_y);
+    rays.time.fill(0, count, now);
+    const std::optional<View>& opening = settings_.view_at_shutter_opening;
+    if (opening) sample_numbers(points, count, PathIntegrator::time_dimension, rays.time);
+    for (int i = 0; i < count; ++i) {
+        const float at_x = scratch.primary_x[i] + x[i], at_y = scratch.primary_y[i] + y[i];
+        const glm::vec2 lens = has_lens ? sample_disc({lens_x[i], lens_y[i]}) : glm::vec2(0.0f);
+        Ray ray = view_.lens_ray(at_x, at_y, lens);
+        if (opening) {
+            const Ray before = opening->lens_ray(at_x, at_y, lens);
+            ray.origin = glm::mix(before.origin, ray.origin, rays.time[i]);
+            ray.direction = glm::normalize(glm::mix(before.direction, ray.direction, rays.time[i]));
+        }
+        const float scale = depth_per_distance(view_, ray.direction);
+        rays.set(i, ray.origin, ray.direction, view_.camera().far_plane / scale, rays.time[i]);
+        rays.nearest[i] = view_.camera().near_plane / scale;
+    }
+}
+
+// Traces the primary rays that wait, and follows the paths that start where they end.
+void ReferenceRun::trace_primary_rays(Scratch& scratch) {
+    RayBatch& rays = scratch.primary;
+    const HitBatch& hits = scratch.hits;
+    const SampleBatch& samples = scratch.primary_samples;
+    make_primary_rays(scratch);
+    scene_.intersect(rays, scratch.hits);
+    scratch.rays += static_cast<std::uint64_t>(rays.count);
+    MetRays& met = scratch.met;
+    met.find(rays, hits);
+    for (int i = 0; i < rays.count && met.count < rays.count; ++i) {
+        if (!hits.missed(i)) continue;
+        accumulation_.add_background(samples.pixel[i], samples.half[i],
+                                     scene_.scene().environment_radiance(rays.direction.get(i)));
+    }
+    integrator_.start(rays, hits, met, scratch.primary_points, scratch.starts);
+    for (int j = 0; j < met.count; ++j) {
+        scratch.samples.pixel[j] = samples.pixel[met.ray[j]];
+        scratch.samples.half[j] = samples.half[met.ray[j]];
     }
     flush(scratch);
-    scratch.primary.count = 0;
+    rays.count = 0;
+}
+
+// Lets `count` rays through pixel (x, y) wait to be traced.
+void ReferenceRun::add_spread_samples(int x, int y, int first_sample, int count, Scratch& scratch) {
+    const SampleSequence sequence(settings_.seed, x, y, settings_.points);
+    for (int sample = first_sample; sample < first_sample + count;) {
+        const int begin = scratch.primary.count, end = std::min(most_lanes, begin + first_sample + count - sample);
+        scratch.primary_samples.fill(begin, end, static_cast<std::uint32_t>(pixel_index(x, y)), sample);
+        scratch.primary_x.fill(begin, end, static_cast<float>(x));
+        scratch.primary_y.fill(begin, end, static_cast<float>(y));
+        sequence.start_samples(sample, end - begin, begin, scratch.primary_points);
+        scratch.primary.count = end;
+        sample += end - begin;
+        if (end == most_lanes) trace_primary_rays(scratch);
+    }
 }
 
 void ReferenceRun::render_tile(int tile, int first_sample, int count, Scratch& scratch) {
     const int columns = tiles_along(view_.width());
     const int left = tile % columns * tile_size, top = tile / columns * tile_size;
-    for (int y = top; y < std::min(top + tile_size, view_.height()); ++y) {
-        for (int x = left; x < std::min(left + tile_size, view_.width()); ++x) {
-            if (!plan_.primary_rays_are_sampled) {
-                add_centre_samples(x, y, first_sample, count, scratch);
-                continue;
-            }
-            SampleSequence sequence(settings_.seed, x, y, settings_.points);
-            for (int sample = first_sample; sample < first_sample + count; ++sample) {
-                sequence.start_sample(sample);
-                const float time =
-                    settings_.view_at_shutter_opening ? sequence.number(PathIntegrator::time_dimension) : now;
-                const Ray ray = primary_ray(x, y, sequence, time);
-                const float scale = depth_per_distance(view_, ray.direction);
-                const int lane = scratch.primary.count;
-                scratch.primary_index[lane] = sequence.index();
-                scratch.primary_pixel[lane] = static_cast<std::uint32_t>(pixel_index(x, y));
-                scratch.primary_half[lane] = static_cast<std::uint8_t>(sample & 1);
-                scratch.primary.add(ray.origin, ray.direction, view_.camera().far_plane / scale, time);
-                scratch.primary.nearest[lane] = view_.camera().near_plane / scale;
-                if (scratch.primary.count == most_lanes) add_spread_samples(scratch);
-            }
+    const int right = std::min(left + tile_size, view_.width()), bottom = std::min(top + tile_size, view_.height());
+    for (int y = top; y < bottom; ++y) {
+        if (!plan_.primary_rays_are_sampled) {
+            add_centre_samples(left, right, y, first_sample, count, scratch);
+            continue;
         }
+        for (int x = left; x < right; ++x) add_spread_samples(x, y, first_sample, count, scratch);
     }
     // Other tiles' pixels are other threads'.
-    if (plan_.primary_rays_are_sampled) add_spread_samples(scratch);
+    if (scratch.primary.count > 0 && plan_.primary_rays_are_sampled) trace_primary_rays(scratch);
     flush(scratch);
 }
 
@@ -267,6 +308,10 @@ void ReferenceRun::resume(const ReferenceControl& control) {
 
 bool ReferenceRun::sample(const ReferenceControl& control) {
     constexpr double pass_seconds = 1.0, checkpoint_seconds = 60.0;
+    // The first pass, before the pace is known, is what few machines take much longer for; not all of a small image's
+    // samples, so that there is something to tell of.
+    constexpr double first_pass_rays = 2e6, first_pass_samples = 16.0;
+    const double rays_per_sample = static_cast<double>(hits_.size()) * (1 + 2 * plan_.estimation.bounces);
     const Clock::time_point start = Clock::now();
     Clock::time_point last_checkpoint = start;
     resume(control);
@@ -280,7 +325,9 @@ bool ReferenceRun::sample(const ReferenceControl& control) {
         if (target > 0.0 && is_error_check(samples_done()) && worst_error() < target) break;
         int limit = settings_.samples;
         if (target > 0.0) limit = std::min(limit, state_.begin + next_error_check(samples_done()));
-        const double affordable = seconds_per_sample > 0.0 ? pass_seconds / seconds_per_sample : 2.0;
+        const double affordable = seconds_per_sample > 0.0
+                                      ? pass_seconds / seconds_per_sample
+                                      : std::min(first_pass_samples, first_pass_rays / rays_per_sample);
         const int pairs = static_cast<int>(std::clamp(0.5 * affordable, 1.0, 1e6));
         const int count = std::min(2 * pairs, limit - state_.end);
 

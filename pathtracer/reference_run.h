@@ -42,10 +42,13 @@ private:
     void resume(const ReferenceControl& control);
     void render_pass(int first_sample, int count);
     void render_tile(int tile, int first_sample, int count, Scratch& scratch);
-    void add_centre_samples(int x, int y, int first_sample, int count, Scratch& scratch);
-    void add_spread_samples(Scratch& scratch);
+    void add_centre_samples(int left, int right, int y, int first_sample, int count, Scratch& scratch);
+    void add_centre_samples(int x, int y, const SurfacePoint& point, const glm::vec3& direction, int first_sample,
+                            int count, Scratch& scratch);
+    void add_spread_samples(int x, int y, int first_sample, int count, Scratch& scratch);
+    void make_primary_rays(Scratch& scratch) const;
+    void trace_primary_rays(Scratch& scratch);
     void flush(Scratch& scratch);
-    Ray primary_ray(int x, int y, const SampleSequence& sequence, float time) const;
     double worst_error() const;
     ReferenceResult finish(bool complete);  // the sums are gone afterwards
     int samples_done() const { return state_.end - state_.begin; }

@@ -95,7 +95,7 @@ struct SampleLanes {
     Lanes<std::uint32_t> key_low, key_high, reversed_index;
 
     PLUMBLINE_INLINE SampleIndex get(int lane) const { return {key_low[lane], key_high[lane], reversed_index[lane]}; }
-    void set(int lane, const SampleIndex& sample) {
+    PLUMBLINE_INLINE void set(int lane, const SampleIndex& sample) {
         key_low[lane] = sample.key_low, key_high[lane] = sample.key_high;
         reversed_index[lane] = sample.reversed_index;
     }
@@ -117,7 +117,7 @@ public:
                   sobol ? reverse_bits(static_cast<std::uint32_t>(sample >> 1)) : 0};
     }
 
-    // Samples first to first + count - 1, into lanes from `begin` on.
+    // Samples first to first + count - 1, into lanes from `begin` on; what stood up to a group behind them is lost.
     void start_samples(int first, int count, int begin, SampleLanes& lanes) const {
         if (points_ == SamplePoints::random) {
             SampleSequence one = *this;
@@ -130,7 +130,7 @@ public:
         const std::uint64_t even = mix_bits(pixel_key_), odd = mix_bits(pixel_key_ + 1);
         const auto low = [](std::uint64_t key) { return static_cast<std::uint32_t>(key); };
         const std::uint32_t lows[] = {low(even), low(odd)}, highs[] = {low(even >> 32), low(odd >> 32)};
-        for (int i = 0; i < count; ++i) {
+        for (int i = 0; i < whole_groups(count); ++i) {
             const auto sample = static_cast<std::uint32_t>(first + i);
             const bool in_half_b = (sample & 1) != 0;
             lanes.key_low[begin + i] = in_half_b ? lows[1] : lows[0];
@@ -153,7 +153,7 @@ private:
 inline void sample_points(const SampleLanes& samples, int count, std::uint32_t dimension, Lanes<float>& x,
                           Lanes<float>& y) {
     const std::uint32_t mixed_dimension = mix_word(dimension);
-    for (int i = 0; i < count; ++i) {
+    for (int i = 0; i < whole_groups(count); ++i) {
         const glm::vec2 point = sobol_point(samples.get(i), mixed_dimension);
         x[i] = point.x, y[i] = point.y;
     }
@@ -163,7 +163,7 @@ inline void sample_points(const SampleLanes& samples, int count, std::uint32_t d
 inline void sample_points(const SampleLanes& samples, int count, std::uint32_t dimension, Lanes<std::uint32_t>& x,
                           Lanes<float>& y) {
     const std::uint32_t mixed_dimension = mix_word(dimension);
-    for (int i = 0; i < count; ++i) {
+    for (int i = 0; i < whole_groups(count); ++i) {
         const FixedPoint point = fixed_sobol_point(samples.get(i), mixed_dimension);
         x[i] = point.x, y[i] = to_unit_interval(point.y);
     }
@@ -172,7 +172,7 @@ inline void sample_points(const SampleLanes& samples, int count, std::uint32_t d
 // One number each.
 inline void sample_numbers(const SampleLanes& samples, int count, std::uint32_t dimension, Lanes<float>& x) {
     const std::uint32_t mixed_dimension = mix_word(dimension);
-    for (int i = 0; i < count; ++i) x[i] = sobol_point(samples.get(i), mixed_dimension).x;
+    for (int i = 0; i < whole_groups(count); ++i) x[i] = sobol_point(samples.get(i), mixed_dimension).x;
 }
 
 }  // namespace plumb

@@ -66,6 +66,17 @@ void copy_rays(const RayBatch& rays, int first, Packet& packet, std::array<int, 
     }
 }
 
+// Starts to fetch the texels that Texture::sample will read at `uv`. Coordinates beyond the texture are taken as
+// repeating it: where it does something else, what is fetched is of no use, but that is all. Inlined, since GCC 12
+// drops calls of functions that do nothing else.
+PLUMBLINE_INLINE void fetch_texels(const Texture& texture, const glm::vec2& uv) {
+    const glm::vec2 size(texture.width, texture.height);
+    const glm::ivec2 first = glm::max((uv - glm::floor(uv)) * size - 0.5f, glm::vec2(0.0f));
+    for (const int row : {first.y, std::min(first.y + 1, texture.height - 1)}) {
+        __builtin_prefetch(&texture.texels[4 * (static_cast<std::size_t>(row) * texture.width + first.x)]);
+    }
+}
+
 SpecularSurface specular_side(const SurfaceSample& sample) {
     return {sample.specular_f0, sample.specular_f90, ggx_alpha(sample.roughness), sample.transmission};
 }
@@ -197,7 +208,7 @@ void TracedScene::transmittance(const RayBatch& rays, VectorLanes& fraction) con
     if (!has_transparency_) {
         Lanes<int> blocked;
         occluded(rays, blocked);
-        for (int i = 0; i < rays.count; ++i) fraction.set(i, glm::vec3(blocked[i] ? 0.0f : 1.0f));
+        for (int i = 0; i < whole_groups(rays.count); ++i) fraction.set(i, glm::vec3(blocked[i] ? 0.0f : 1.0f));
         return;
     }
     EmbreeQuery query(RayCoherence::incoherent);
@@ -248,18 +259,19 @@ struct CornerLanes {
 };
 
 // Where nothing moves, vertices are found by their numbers alone. Lanes do not depend on each other.
-void TracedScene::gather_corners(const HitBatch& hits, const Lanes<int>& lanes, int count, CornerLanes& corners) const {
+void TracedScene::gather_corners(const HitBatch& hits, const MetRays& met, CornerLanes& corners) const {
     const int *first_triangle = table_.first_triangle.data(), *first_vertex = table_.first_vertex.data();
     const std::uint32_t* triangles = triangles_.data();
     const float *positions = &positions_.data()->x, *normals = &normals_.data()->x;
     PLUMBLINE_INDEPENDENT_LANES
-    for (int i = 0; i < count; ++i) {
-        const auto instance = static_cast<int>(hits.instance[lanes[i]]);
-        const int triangle = 3 * (first_triangle[instance] + static_cast<int>(hits.triangle[lanes[i]]));
+    for (int i = 0; i < whole_groups(met.count); ++i) {
+        const int ray = met.ray[i];
+        const auto instance = static_cast<int>(hits.instance[ray]);
+        const int triangle = 3 * (first_triangle[instance] + static_cast<int>(hits.triangle[ray]));
         const int a = 3 * (first_vertex[instance] + static_cast<int>(triangles[triangle])),
                   b = 3 * (first_vertex[instance] + static_cast<int>(triangles[triangle + 1])),
                   c = 3 * (first_vertex[instance] + static_cast<int>(triangles[triangle + 2]));
-        const float u = hits.u[lanes[i]], v = hits.v[lanes[i]], w = 1.0f - u - v;
+        const float u = hits.u[ray], v = hits.v[ray], w = 1.0f - u - v;
         const auto at = [](const float* from, int first) {
             return glm::vec3(from[first], from[first + 1], from[first + 2]);
         };
@@ -268,34 +280,59 @@ void TracedScene::gather_corners(const HitBatch& hits, const Lanes<int>& lanes, 
     }
 }
 
-void TracedScene::surface_points(const RayBatch& rays, const HitBatch& hits, const Lanes<int>& lanes, int count,
+// Two rounds: the first starts to fetch the texels of all points, for hardly any of them is in a cache.
+void TracedScene::look_up_textures(const HitBatch& hits, const MetRays& met, const Lanes<float>& lit,
+                                   SurfaceLanes& points) const {
+    Lanes<float> u, v;
+    for (int i = 0; i < met.count; ++i) {
+        const SurfaceHit hit = hits.get(met.ray[i]);
+        const Part& part = parts_[hit.instance];
+        if (!part.has_textures) continue;
+        const glm::vec2 uv = part.uv(hit.triangle, hit.u, hit.v);
+        u[i] = uv.x, v[i] = uv.y;
+        const Material& material = *part.material;
+        for (const int texture :
+             {material.base_colour_texture, material.metallic_roughness_texture, material.emission_texture}) {
+            if (texture != no_texture) fetch_texels(scene_.textures[texture], uv);
+        }
+    }
+    for (int i = 0; i < met.count; ++i) {
+        const Part& part = parts_[hits.instance[met.ray[i]]];
+        if (!part.has_textures) continue;
+        const SurfaceSample sample = scene_.surface(*part.material, {u[i], v[i]});
+        points.albedo.set(i, lit[i] * sample.albedo), points.emission.set(i, lit[i] * sample.emission);
+    }
+}
+
+void TracedScene::surface_points(const RayBatch& rays, const HitBatch& hits, const MetRays& met,
                                  SurfaceLanes& points) const {
     CornerLanes corners;
     if (!anything_moves_) {
-        gather_corners(hits, lanes, count, corners);
+        gather_corners(hits, met, corners);
     } else {
-        for (int i = 0; i < count; ++i) {
-            const SurfaceHit hit = hits.get(lanes[i]);
+        for (int i = 0; i < whole_groups(met.count); ++i) {
+            const int ray = met.ray[i];
+            const SurfaceHit hit = hits.get(ray);
             const Part& part = parts_[hit.instance];
             TracedTriangle triangle;
-            part.corners(hit.triangle, rays.time[lanes[i]], triangle);
+            part.corners(hit.triangle, rays.time[ray], triangle);
             corners.a.set(i, triangle.a), corners.b.set(i, triangle.b), corners.c.set(i, triangle.c);
-            corners.normal_sum.set(i, part.normal_sum(hit.triangle, hit.u, hit.v, rays.time[lanes[i]]));
+            corners.normal_sum.set(i, part.normal_sum(hit.triangle, hit.u, hit.v, rays.time[ray]));
         }
     }
     Lanes<float> lit;
     const float *back_is_lit = table_.back_is_lit.data(), *albedos = &table_.albedo.data()->x,
                 *emissions = &table_.emission.data()->x;
     PLUMBLINE_INDEPENDENT_LANES
-    for (int i = 0; i < count; ++i) {
-        const int lane = lanes[i];
+    for (int i = 0; i < whole_groups(met.count); ++i) {
+        const int ray = met.ray[i];
         const PointGeometry point =
-            point_geometry({corners.a.get(i), corners.b.get(i), corners.c.get(i), {}, {}, {}}, hits.u[lane],
-                           hits.v[lane], corners.normal_sum.get(i), rays.direction.get(lane));
+            point_geometry({corners.a.get(i), corners.b.get(i), corners.c.get(i), {}, {}, {}}, hits.u[ray], hits.v[ray],
+                           corners.normal_sum.get(i), rays.direction.get(ray));
         points.ray_origin.set(i, point.ray_origin);
         points.geometric_normal.set(i, point.geometric_normal);
         points.shading_normal.set(i, point.shading_normal);
-        const auto instance = static_cast<int>(hits.instance[lane]);
+        const auto instance = static_cast<int>(hits.instance[ray]);
         const float lit_from_behind = back_is_lit[instance];
         lit[i] = point.side > 0.0f ? 1.0f : lit_from_behind;
         const auto at = [first = 3 * instance](const float* from) {
@@ -304,13 +341,7 @@ void TracedScene::surface_points(const RayBatch& rays, const HitBatch& hits, con
         points.albedo.set(i, lit[i] * at(albedos));
         points.emission.set(i, lit[i] * at(emissions));
     }
-    if (!has_textures_) return;
-    for (int i = 0; i < count; ++i) {
-        const Part& part = parts_[hits.instance[lanes[i]]];
-        if (!part.has_textures) continue;
-        const SurfaceSample sample = part.sample(hits.get(lanes[i]));
-        points.albedo.set(i, lit[i] * sample.albedo), points.emission.set(i, lit[i] * sample.emission);
-    }
+    if (has_textures_) look_up_textures(hits, met, lit, points);
 }
 
 glm::vec3 TracedScene::specular_albedo(const SpecularSurface& surface, const glm::vec3& shading_normal,

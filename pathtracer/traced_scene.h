@@ -53,12 +53,11 @@ public:
     void transmittance(const RayBatch& rays, VectorLanes& fraction) const;
 
     SurfacePoint surface_point(const SurfaceHit& hit, const glm::vec3& ray_direction, float time = now) const;
-    // The same for the rays listed in `lanes`, which met something, the i-th of them into lane i of `points`, without
-    // specular parts.
-    void surface_points(const RayBatch& rays, const HitBatch& hits, const Lanes<int>& lanes, int count,
-                        SurfaceLanes& points) const;
+    // The same for the rays in `met`, the i-th of them into lane i of `points`, without specular parts.
+    void surface_points(const RayBatch& rays, const HitBatch& hits, const MetRays& met, SurfaceLanes& points) const;
     // False where the surface may have a specular lobe or let light pass.
     bool is_plain(std::uint32_t instance) const { return parts_[instance].is_plain; }
+    bool all_plain() const { return !has_specular_lobes_ && !has_transparency_; }
 
     // What share of light the specular lobe reflects, of what comes against `to_viewer`.
     glm::vec3 specular_albedo(const SpecularSurface& surface, const glm::vec3& shading_normal,
@@ -99,7 +98,9 @@ private:
     void reserve(const TimeSpan& span);
     void add(std::uint32_t index, const TimeSpan& span);
     void attach(std::uint32_t index);
-    void gather_corners(const HitBatch& hits, const Lanes<int>& lanes, int count, CornerLanes& corners) const;
+    void gather_corners(const HitBatch& hits, const MetRays& met, CornerLanes& corners) const;
+    void look_up_textures(const HitBatch& hits, const MetRays& met, const Lanes<float>& lit,
+                          SurfaceLanes& points) const;
     void add_vertices(const Instance& instance, const Part& part, const TimeSpan& span);
     RTCScene scene_for(const OracleLayers* layers) const;  // the tree that takes a filter where there are layers
     static EmbreeQuery query_for(const OracleLayers* layers, RayCoherence coherence = RayCoherence::incoherent);

@@ -74,15 +74,15 @@ void expect_single_rays_hits(const Scene& scene, const TimeSpan& span = {}) {
             }
             if (oracle) continue;
             // What lies there, side by side and one by one.
-            Lanes<int> lanes;
-            int count = 0;
+            MetRays listed;
             for (int i = rays.count - 1; i >= 0; --i) {
-                if (!hits.missed(i)) lanes[count++] = i;
+                if (!hits.missed(i)) listed.ray[listed.count++] = i;
             }
+            listed.complete_group();
             SurfaceLanes points;
-            traced.surface_points(rays, hits, lanes, count, points);
-            for (int j = 0; j < count; ++j) {
-                const int i = lanes[j];
+            traced.surface_points(rays, hits, listed, points);
+            for (int j = 0; j < listed.count; ++j) {
+                const int i = listed.ray[j];
                 const SurfacePoint point = traced.surface_point(hits.get(i), rays.direction.get(i), rays.time[i]);
                 const bool equal = points.ray_origin.get(j) == point.ray_origin &&
                                    points.geometric_normal.get(j) == point.geometric_normal &&
