@@ -7,7 +7,9 @@
 
 namespace plumb {
 
-double calibration_floor(ThresholdKind kind) { return kind == ThresholdKind::cost ? 0.10 : 0.02; }
+double calibration_floor(const Threshold& threshold) {
+    return threshold.kind == ThresholdKind::cost || !threshold.rows.path.empty() ? 0.10 : 0.02;
+}
 
 CalibratedValue pool(const std::vector<double>& values, const std::optional<CalibratedValue>& before) {
     CalibratedValue result;
@@ -63,7 +65,7 @@ double calibrated_limit(const Threshold& threshold, double pooled_spread) {
     }
     const double noise = 4.0 * std::max(value.spread, pooled_spread * size);
     const double worst = threshold.fails_above ? value.greatest - value.mean : value.mean - value.least;
-    const double reach = std::max({noise, calibration_floor(threshold.kind) * size, worst});
+    const double reach = std::max({noise, calibration_floor(threshold) * size, worst});
     return round_outwards(threshold.fails_above ? value.mean + reach : value.mean - reach, threshold.fails_above);
 }
 

@@ -5,7 +5,7 @@
 //   limit = m + max(4 * max(s, p * |m|), f * |m|, g - m)     for fail_above; mirrored for fail_below
 //
 // rounded outwards to three digits, where p is the relative spread pooled over all thresholds of the same kind, g the
-// worst value that was seen, and f a floor by kind.
+// worst value that was seen, and f a floor.
 //
 // - Four spreads: a check has some twenty thresholds and runs with every change; at four spreads noise alone breaks one
 //   build in some 1600 (one-sided normal tail 3.2e-5), at three one in 37.
@@ -13,10 +13,11 @@
 //   seems half as noisy as it is; values of a kind are noisy for the same reason, and together they tell how much.
 // - The floors stand for what repeated runs on one machine cannot show. Methods and truths are the same to the last bit
 // in
-//   every run, so errors, benefits and flicker have no spread at all; on another driver or another processor they have.
-//   Two per cent covers that: the built-in scenes change by less than half a per cent between Mesa's two software
-//   drivers, and by about one per cent with another seed of the truth (docs/continuous_integration.md has the figures).
-//   Times have a spread; their floor, a tenth, is there because another processor weighs the work differently.
+//   every run, so errors, benefits and flicker have no spread at all; with another truth (a changed integrator draws
+//   other samples) or another driver they have. Another seed of the truth moves errors of experiments/ci.toml by up to
+//   0.5 % and benefits by 0.05 %, against a floor of 2 %; along camera paths, whose truths have fewer samples, flicker
+//   by up to 4.5 %, against a floor of 10 %. Times have a spread; their floor, 10 %, is there because another processor
+//   weighs the work differently.
 #pragma once
 
 #include <optional>
@@ -27,8 +28,8 @@
 
 namespace plumb {
 
-// By kind of threshold, as a share of the mean.
-double calibration_floor(ThresholdKind kind);
+// f of the rule, as a share of the mean.
+double calibration_floor(const Threshold& threshold);
 
 // Statistics of `values`, together with those of `before` (Chan, Golub, LeVeque 1979: pairwise update of sums of
 // squares). `values` must not be empty.

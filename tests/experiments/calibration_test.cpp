@@ -65,6 +65,9 @@ TEST(Calibration, ValuesWithoutSpreadKeepAFloor) {
         << "2 %";
     EXPECT_DOUBLE_EQ(calibrated_limit(threshold_with(ThresholdKind::cost, {10, 0.5, 0.0, 0.5, 0.5}), 0.0), 0.55)
         << "10 %";
+    Threshold along_path = threshold_with(ThresholdKind::flicker, {10, 0.5, 0.0, 0.5, 0.5});
+    along_path.rows.path = "*";
+    EXPECT_DOUBLE_EQ(calibrated_limit(along_path, 0.0), 0.55) << "10 %";
     Threshold below = threshold_with(ThresholdKind::error, {10, -0.5, 0.0, -0.5, -0.5});
     below.fails_above = false;
     EXPECT_DOUBLE_EQ(calibrated_limit(below, 0.0), -0.51);
