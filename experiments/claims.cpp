@@ -143,7 +143,10 @@ std::string dependence(const Claim& claim, const Measured& measured) {
     }
     const auto count = std::ranges::count_if(
         measured.cases, [&](const MeasuredCase& entry) { return is_inside(claim, entry.value, entry.value); });
-    return fmt::format("on the view: holds in {} of {}", count, measured.cases.size());
+    const bool all_agree = count == 0 || count == std::ssize(measured.cases);
+    return fmt::format("on {}: holds in {} of {}",
+                       all_agree ? "more views than these, which differ widely" : "the view", count,
+                       measured.cases.size());
 }
 
 }  // namespace
