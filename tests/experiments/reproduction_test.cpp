@@ -1,0 +1,226 @@
+// The experiments that reproduce the literature: that every one can be read, what mistakes in them are told, and what
+// is made of measurements.
+#include "experiments/reproduction.h"
+
+#include <fstream>
+#include <iterator>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "experiments/experiment_file.h"
+#include "experiments/figures.h"
+#include "experiments/svg_raster.h"
+#include "frames/atomic_file.h"
+#include "frames/image_error.h"
+#include "frames/picture.h"
+#include "scenes/scene_error.h"
+#include "tests/experiments/errors.h"
+#include "tests/experiments/temporary_folder.h"
+
+namespace plumb {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+constexpr const char* experiment_text = R"(
+title = "A trial"
+planes = ["ao"]
+[[scenes]]
+scene = "cornell"
+[[methods]]
+name = "one"
+base = "one_layer"
+[[methods]]
+name = "two"
+base = "two_layers"
+)";
+
+Reproduction load_text(const std::string& more) {
+    const TemporaryFolder folder;
+    const std::filesystem::path file = folder.path / "trial.toml";
+    write_text_atomically(file, std::string(experiment_text).append(more));
+    return load_reproduction(file.string());
+}
+
+std::string complaint_about(const std::string& more) {
+    return message_of<ConfigError>([&] { load_text(more); });
+}
+
+std::string claim_with(const std::string& lines) {
+    return std::string("[[claims]]\nclaim = \"c\"\nsource = \"s\"\ntest = \"t\"\nmeasure = \"rmse\"\n").append(lines);
+}
+
+TEST(Reproductions, EveryOneCanBeReadAndSaysWhereItStands) {
+    const std::vector<std::string> names = reproduction_names();
+    EXPECT_GE(names.size(), 20u);
+    std::size_t claims = 0;
+    for (const std::string& name : names) {
+        SCOPED_TRACE(name);
+        const Reproduction reproduction = load_reproduction(name);
+        EXPECT_FALSE(reproduction.title.empty());
+        EXPECT_FALSE(reproduction.question.empty());
+        EXPECT_THAT(reproduction.sources(), testing::MatchesRegex("00[0-3], .*"));
+        EXPECT_FALSE(reproduction.presentation.figures.empty());
+        claims += reproduction.presentation.claims.size();
+    }
+    EXPECT_GE(claims, 24u);
+}
+
+TEST(Reproductions, AMisspeltNameIsToldWithTheNearest) {
+    EXPECT_THAT(message_of<ConfigError>([] { load_reproduction("thesis-gbuffer-tim"); }),
+                HasSubstr("did you mean 'thesis-gbuffer-time'?"));
+}
+
+TEST(Presentation, MethodsThatTheExperimentDoesNotHaveAreTold) {
+    EXPECT_THAT(complaint_about(claim_with("ratio = [{ method = \"tow\" }, { method = \"one\" }]\nbelow = 1.0\n")),
+                AllOf(HasSubstr("trial.toml"), HasSubstr("claim 'c'"), HasSubstr("did you mean 'two'?")));
+}
+
+TEST(Presentation, ClaimsNeedAQuantityAndARange) {
+    EXPECT_THAT(complaint_about(claim_with("below = 1.0\n")), HasSubstr("one of 'value', 'ratio'"));
+    EXPECT_THAT(complaint_about(claim_with("value = {}\nslope = {}\nbelow = 1.0\n")), HasSubstr("one of 'value'"));
+    EXPECT_THAT(complaint_about(claim_with("value = {}\n")), HasSubstr("'above', 'below', or both"));
+    EXPECT_THAT(complaint_about(claim_with("value = {}\nabove = 2.0\nbelow = 1.0\n")), HasSubstr("leaves nothing"));
+    EXPECT_THAT(complaint_about(claim_with("ratio = { method = \"one\" }\nbelow = 1.0\n")),
+                HasSubstr("array of two tables"));
+    EXPECT_THAT(complaint_about(claim_with("value = { scen = \"cornell\" }\nbelow = 1.0\n")),
+                HasSubstr("did you mean 'scene'?"));
+    EXPECT_THAT(complaint_about(claim_with("value = {}\nbelow = 1.0\nbelwo = 2.0\n")), HasSubstr("'below'"));
+}
+
+TEST(Presentation, OriginalsNeedTheirBaseAmongTheRows) {
+    EXPECT_THAT(complaint_about("[[originals]]\ntitle = \"o\"\nsource = \"s\"\nmeasure = \"ms\"\nbase = \"b\"\n"
+                                "rows = [{ name = \"a\", original = 1.0 }]\n"),
+                HasSubstr("no row 'b'"));
+}
+
+TEST(OptionalScenes, AreLeftOutWithTheReasonUnlessNoneIsLeft) {
+    Experiment experiment;
+    experiment.file = "trial.toml";
+    experiment.scenes.resize(2);
+    experiment.scenes[0].scene = "cornell";
+    experiment.scenes[1].scene = "nowhere/missing.toml", experiment.scenes[1].optional = true;
+    const std::vector<std::string> left_out = leave_out_absent_scenes(experiment, SceneFinder({}));
+    ASSERT_EQ(left_out.size(), 1u);
+    EXPECT_THAT(left_out[0], HasSubstr("nowhere/missing.toml: "));
+    ASSERT_EQ(experiment.scenes.size(), 1u);
+    experiment.scenes[0].scene = "nowhere/missing.toml", experiment.scenes[0].optional = true;
+    EXPECT_THAT(message_of<SceneError>([&] { leave_out_absent_scenes(experiment, SceneFinder({})); }),
+                HasSubstr("all of its scenes are optional"));
+}
+
+// Two views, three methods of which two make a curve.
+std::vector<Cell> sample_cells() {
+    std::vector<Cell> cells;
+    for (const double view : {1.0, 2.0}) {
+        const std::string place = view == 1.0 ? "front" : "left";
+        for (const double taps : {10.0, 20.0}) {
+            Cell cell{"cornell", place, "ao", "", taps == 10.0 ? "taps = 10" : "taps = 20", "taps", taps};
+            cell.set("rmse", view * 0.1 / taps);
+            cell.set("ms", view * taps);
+            cells.push_back(cell);
+        }
+        Cell other{"cornell", place, "ao", "", "other", ""};
+        other.set("rmse", view * 0.02);
+        other.set("ms", view * 5.0);
+        cells.push_back(other);
+    }
+    return cells;
+}
+
+std::string png_of(const std::string& svg) { return rasterise_svg(svg, 1.0); }
+const std::string png_signature = "\x89PNG";
+
+TEST(Figures, CurvesAverageOverViewsAndAreWellFormed) {
+    Figure figure;
+    figure.title = "Error <over> taps & more", figure.series = "curve";
+    const ResultTable numbers = chart_numbers(figure, sample_cells());
+    ASSERT_EQ(numbers.rows.size(), 2u);
+    EXPECT_EQ(numbers.rows[0][2], "10");
+    EXPECT_EQ(numbers.rows[0][3], "0.0141421");  // the geometric mean of 0.01 and 0.02
+    EXPECT_EQ(numbers.rows[0][6], "2");
+    EXPECT_THAT(png_of(print_chart(figure, sample_cells())), testing::StartsWith(png_signature));
+}
+
+TEST(Figures, BarsRelativeToAMethodAreRatiosWithIntervals) {
+    Figure figure;
+    figure.title = "Bars", figure.kind = FigureKind::bars, figure.x = "scene", figure.series = "method";
+    figure.linear_y = true;
+    figure.relative_to.wanted["method"] = {"other"};
+    const ResultTable numbers = chart_numbers(figure, sample_cells());
+    ASSERT_EQ(numbers.rows.size(), 2u) << "the base itself has no bar";
+    EXPECT_EQ(numbers.rows[0][1], "taps = 10");
+    EXPECT_EQ(numbers.rows[0][3], "0.5");  // 0.01 / 0.02 in both views
+    EXPECT_THAT(png_of(print_chart(figure, sample_cells())), testing::StartsWith(png_signature));
+}
+
+TEST(Figures, NothingMeasuredMakesNoFigure) {
+    EXPECT_EQ(print_chart({}, {}), "");
+    EXPECT_EQ(print_picture_sheet({}, {}, "."), "");
+}
+
+TEST(Figures, OriginalsStandBesideOursAsRatios) {
+    Originals originals;
+    originals.title = "Time", originals.measure = "ms", originals.unit = "ms", originals.base = "few";
+    Selector few, many, nowhere;
+    few.wanted["parameter"] = {"10"}, many.wanted["parameter"] = {"20"}, nowhere.wanted["scene"] = {"dragon"};
+    originals.rows = {{"few", 1.0, few}, {"many", 3.0, many}, {"elsewhere", 4.0, nowhere}};
+    const ResultTable table = make_originals_table(originals, sample_cells());
+    EXPECT_THAT(table.rows[0], testing::ElementsAre("few", "1", "1", "14.1", "1", "2"));
+    EXPECT_THAT(table.rows[1], testing::ElementsAre("many", "3", "3", "28.3", "2 [2, 2]", "2"));
+    EXPECT_THAT(table.rows[2], testing::ElementsAre("elsewhere", "4", "4", "not here", "-", "0"));
+}
+
+TEST(Figures, PictureSheetsHoldTheirPictures) {
+    const TemporaryFolder folder;
+    write_png(folder.path / "truth.png", Image(16, 9, 3));
+    write_png(folder.path / "two.png", Image(16, 9, 3));
+    PictureSet set;
+    set.scene = "cornell", set.view = "front", set.plane = "total";
+    set.images = {{"truth", "truth", "truth.png", ""}, {"two", "method", "two.png", ""}};
+    Figure figure;
+    figure.title = "Sheet", figure.kind = FigureKind::pictures;
+    const std::string svg = print_picture_sheet(figure, {set}, folder.path);
+    EXPECT_THAT(svg, AllOf(HasSubstr("data:image/png;base64,"), HasSubstr("cornell / front: total"),
+                           HasSubstr("height=\"135\"")));  // 240 pixels wide, 16 to 9
+    EXPECT_THAT(png_of(svg), testing::StartsWith(png_signature));
+    figure.where.wanted["place"] = {"left"};
+    EXPECT_EQ(print_picture_sheet(figure, {set}, folder.path), "");
+}
+
+TEST(SvgRaster, SaysWhatIsWrongWithTextThatIsNoSvg) {
+    EXPECT_THAT(message_of<ImageError>([] { rasterise_svg("<svg"); }), HasSubstr("cannot draw the SVG"));
+}
+
+TEST(Measurements, ReadBackAndPresentedFilesAreWhole) {
+    Reproduction reproduction =
+        load_text("[[figures]]\ntitle = \"A table\"\nkind = \"table\"\nrows = [\"method\"]\ncolumns = [\"rmse\"]\n");
+    Claim claim;
+    claim.claim = "more taps err less", claim.source = "000, section 1", claim.test = "RMSE, 20 over 10",
+    claim.below = 1.0;
+    claim.quantity = {"rmse", QuantityKind::ratio, {}, {}, {}};
+    claim.quantity.first.wanted["parameter"] = {"20"}, claim.quantity.second.wanted["parameter"] = {"10"};
+    reproduction.presentation.claims.push_back(claim);
+    Measurements measurements;
+    measurements.experiment = "trial", measurements.renderer = "a renderer";
+    measurements.cells = sample_cells();
+    measurements.left_out = {"dragon: not found"};
+    const TemporaryFolder folder;
+    const PresentedReproduction presented = present(reproduction, measurements, folder.path);
+    ASSERT_EQ(presented.claims.size(), 1u);
+    EXPECT_EQ(presented.claims[0].verdict, ClaimVerdict::holds) << presented.claims[0].reason;
+    for (const char* name : {"measurements.json", "numbers.csv", "claims.json", "figure-1.csv", "README.md"})
+        EXPECT_TRUE(std::filesystem::exists(folder.path / name)) << name;
+    std::ifstream stream(folder.path / "README.md");
+    const std::string readme{std::istreambuf_iterator<char>(stream), {}};
+    EXPECT_THAT(readme, AllOf(HasSubstr("# A trial"), HasSubstr("Left out: dragon: not found"),
+                              HasSubstr("**holds** more taps err less"), HasSubstr("| taps = 10 | 0.015 |")));
+    const Measurements again = read_measurements_json(folder.path / "measurements.json");
+    EXPECT_EQ(print_cells_csv(again.cells), print_cells_csv(measurements.cells));
+    EXPECT_EQ(again.left_out, measurements.left_out);
+}
+
+}  // namespace
+}  // namespace plumb
