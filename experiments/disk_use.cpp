@@ -44,6 +44,8 @@ DiskUse disk_use(const Experiment& experiment, const SceneFinder& finder, bool w
         if (write_frames) use.output += views * (planes_of_truth * (full + limited) + methods * full);
         // Pictures: a byte or less per value, of truths, methods and error maps.
         use.output += (views + frames) * (2 * methods + 1) * full / sizeof(float);
+        // The values of truths and methods, as half floats.
+        use.output += views * (methods + oracles + 1) * full / 2;
     }
     return use;
 }
