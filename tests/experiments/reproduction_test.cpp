@@ -2,6 +2,7 @@
 // is made of measurements.
 #include "experiments/reproduction.h"
 
+#include <cmath>
 #include <fstream>
 #include <iterator>
 
@@ -62,7 +63,7 @@ TEST(Reproductions, EveryOneCanBeReadAndSaysWhereItStands) {
         EXPECT_FALSE(reproduction.title.empty());
         EXPECT_FALSE(reproduction.question.empty());
         EXPECT_THAT(reproduction.sources(), testing::MatchesRegex("00[0-3], .*"));
-        EXPECT_FALSE(reproduction.presentation.figures.empty());
+        EXPECT_FALSE(reproduction.presentation.figures.empty() && reproduction.drawings.empty());
         claims += reproduction.presentation.claims.size();
     }
     EXPECT_GE(claims, 24u);
@@ -188,6 +189,31 @@ TEST(Figures, PictureSheetsHoldTheirPictures) {
     EXPECT_THAT(png_of(svg), testing::StartsWith(png_signature));
     figure.where.wanted["place"] = {"left"};
     EXPECT_EQ(print_picture_sheet(figure, {set}, folder.path), "");
+}
+
+TEST(Drawings, TapsThatTurnOnceEachLieOnALine) {
+    Drawing drawing;
+    drawing.title = "Spiral";
+    drawing.spirals = {{.samples = 4, .turns = 4, .spin = 0.25}};
+    const ResultTable taps = drawing_numbers(drawing);
+    ASSERT_EQ(taps.rows.size(), 4u);
+    // Half a turn and a quarter on from the right: downwards, at 1/8, 3/8, 5/8 and 7/8 of the radius.
+    EXPECT_NEAR(std::stod(taps.rows[1][2]), 0.0, 1e-12);
+    EXPECT_NEAR(std::stod(taps.rows[1][3]), -0.375, 1e-12);
+    EXPECT_THAT(png_of(print_drawing(drawing)), testing::StartsWith(png_signature));
+}
+
+TEST(Drawings, TheFilterSpreadsAPixelAndKeepsItsLight) {
+    Drawing drawing;
+    drawing.title = "Filter", drawing.kind = Drawing::Kind::filter, drawing.size = 13, drawing.radius = 3;
+    double sum = 0.0;
+    for (const auto& row : drawing_numbers(drawing).rows) sum += std::stod(row[3]);
+    // No pixel that the white one reaches has neighbours beyond the border. Six digits are printed.
+    EXPECT_NEAR(sum, 1.0, 1e-5);
+    // Standard deviation 1: weights 1, e^-1/2, e^-2, e^-9/2 to each side.
+    const double weights = 1.0 + 2.0 * (std::exp(-0.5) + std::exp(-2.0) + std::exp(-4.5));
+    EXPECT_NEAR(std::stod(drawing_numbers(drawing).rows[13 * 6 + 6][3]), 1.0 / (weights * weights), 1e-6);
+    EXPECT_THAT(png_of(print_drawing(drawing)), testing::StartsWith(png_signature));
 }
 
 TEST(SvgRaster, SaysWhatIsWrongWithTextThatIsNoSvg) {
