@@ -24,6 +24,7 @@ MeanSummary summarise(const std::vector<double>& values, QuantityKind kind) {
 
 std::vector<double> values_of(const std::vector<MeasuredCase>& cases) {
     std::vector<double> values;
+    values.reserve(cases.size());
     for (const MeasuredCase& entry : cases) values.push_back(entry.value);
     return values;
 }
@@ -125,6 +126,7 @@ bool is_outside(const Claim& claim, double lower, double upper) {
 
 std::string scenes_text(const Claim& claim, const Measured& measured, const std::vector<std::string>& scenes) {
     std::vector<std::string> texts;
+    texts.reserve(scenes.size());
     for (const std::string& scene : scenes)
         texts.push_back(fmt::format("{} ({})", scene, measured_text(claim, measured.of_scene(scene))));
     return fmt::format("{}", fmt::join(texts, ", "));
