@@ -79,8 +79,10 @@ int compare(const Options& options) {
     const std::vector<Limit> limits = options.gate.limits();
     const ImagePairs images = find_pairs(options.test, options.reference);
     SequenceComparison comparison(settings_of(options, images.pairs.front()));
-    for (const ImagePair& pair : images.pairs)
-        comparison.add(pair.name, read_frame(pair.test), read_frame(pair.reference));
+    for (const ImagePair& pair : images.pairs) {
+        const Frame test = read_frame(pair.test);
+        comparison.add(pair.name, test, read_frame(pair.reference));
+    }
     const std::vector<MeasuredThing> whole = comparison.whole();
     const std::vector<std::string> failed = breaches(whole, limits);
     const bool sequence = images.pairs.size() > 1;

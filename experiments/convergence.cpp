@@ -107,8 +107,10 @@ private:
                                    int seed) const {
         ReferencedErrorSettings settings;
         settings.bootstrap.resamples = 40;  // the seeds tell how sure it is, not the interval
+        // Without the image's own halves: its noise is what is measured.
         const ReferencedError error =
-            referenced_error(image, reference, plane, experiment_.reference_samples, settings);
+            referenced_error(image.plane(plane), reference.plane("half_a." + plane), reference.plane("half_b." + plane),
+                             experiment_.reference_samples, settings);
         return {samples, seed, error.mse, error.reference_noise_mse, false};
     }
 

@@ -4,6 +4,7 @@
 
 #include "experiments/view_truths.h"
 #include "frames/image_error.h"
+#include "scenes/scene_error.h"
 
 namespace plumb {
 namespace {
@@ -13,6 +14,16 @@ std::uintmax_t channels_of(const std::string& plane) {
 }
 
 std::string gigabytes(std::uintmax_t bytes) { return fmt::format("{:.2g} GB", static_cast<double>(bytes) * 1e-9); }
+
+// Of a scene that cannot be loaded there will be none, but a failure on record.
+std::uintmax_t view_count(const ExperimentScene& entry, const SceneFinder& finder) {
+    if (!entry.views.empty()) return entry.views.size();
+    try {
+        return finder.load(entry.scene).cameras.size();
+    } catch (const SceneError&) {
+        return 0;
+    }
+}
 
 // The nearest folder that is there: the one that is asked for may not be made yet.
 std::uintmax_t free_space(std::filesystem::path folder) {
@@ -36,7 +47,7 @@ DiskUse disk_use(const Experiment& experiment, const SceneFinder& finder, bool w
     const std::uintmax_t curve = experiment.path_tracer_samples.size();
     DiskUse use;
     for (const ExperimentScene& entry : experiment.scenes) {
-        const std::uintmax_t views = entry.views.empty() ? finder.load(entry.scene).cameras.size() : entry.views.size();
+        const std::uintmax_t views = view_count(entry, finder);
         std::uintmax_t frames = 0;
         for (const ExperimentPath& path : entry.paths) frames += static_cast<std::uintmax_t>(path.frames);
         use.cache += planes_of_truth * ((views * (1 + oracles) + frames) * full + views * limited);

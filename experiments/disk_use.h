@@ -16,7 +16,7 @@ struct DiskUse {
     std::uintmax_t output = 0;  // frames, pictures and, while it runs, finished cells
 };
 
-// Loads the scenes whose views the experiment does not name. Throws what loading throws.
+// Loads the scenes whose views the experiment does not name; those that cannot be loaded count for nothing.
 DiskUse disk_use(const Experiment& experiment, const SceneFinder& finder, bool write_frames);
 
 // One line, with the space that is free. Throws ImageError that says what to do where it does not suffice.

@@ -43,8 +43,8 @@ const std::vector<std::string>& cell_attributes();
 // other names.
 std::string attribute_of(const Cell& cell, std::string_view attribute);
 
-// A measure by name; "ms of gbuffer*" is the sum of all whose names begin so; "A / B" of two measures is one too, and so
-// are products, sums and differences, worked out from left to right. NaN where a part is missing.
+// A measure by name; "ms of gbuffer*" is the sum of all whose names begin so; "A / B" of two measures is one too, and
+// so are products, sums and differences, worked out from left to right. NaN where a part is missing.
 double measure_of(const Cell& cell, std::string_view measure);
 
 std::vector<Cell> cells_of(const RunResults& results);

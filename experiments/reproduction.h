@@ -38,8 +38,8 @@ std::vector<std::string> reproduction_names();
 // plane or scene that the experiment does not have.
 Reproduction load_reproduction(const std::string& name_or_path);
 
-// Renders and measures, unless there are drawings only; the run's own files go to options.output. Optional scenes that are not there are left out.
-// Throws what loading and rendering throw.
+// Renders and measures, unless there are drawings only; the run's own files go to options.output. Optional scenes that
+// are not there are left out. Throws what loading and rendering throw.
 Measurements run_reproduction(const Reproduction& reproduction, const SceneFinder& finder, const RunOptions& options,
                               bool quick);
 

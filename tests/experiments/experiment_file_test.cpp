@@ -85,7 +85,7 @@ frames = 5
     EXPECT_THAT(failure("[6, 20]", "[6, \"many\"]"), HasSubstr("must hold numbers"));
     EXPECT_THAT(failure("ao.samples", "ao.smaples"), HasSubstr("'ao.samples'"));
     EXPECT_THAT(failure("[6, 20]", "[6, 6]"), HasSubstr("two methods are called"));
-    EXPECT_THAT(failure("frames = 5", "frames = 1"), HasSubstr("scenes[1]"));
+    EXPECT_THAT(failure("frames = 5", "frames = 1"), HasSubstr("e.toml:7: paths[1].frames"));
 }
 
 TEST(ExperimentFile, AnUnknownPlaneIsAnErrorThatNamesTheNearest) {
