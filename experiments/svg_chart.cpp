@@ -292,7 +292,8 @@ std::vector<double> logarithmic_ticks(double least, double greatest) {
             if (tick >= least && tick <= greatest) ticks.push_back(tick);
         }
     }
-    return ticks;
+    constexpr std::size_t fewest = 3;  // else nobody could read a value off the axis
+    return ticks.size() >= fewest ? ticks : linear_ticks(least, greatest);
 }
 
 std::vector<double> linear_ticks(double least, double greatest) {

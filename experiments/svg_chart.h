@@ -37,8 +37,8 @@ struct Chart {
 // Colours that can be told apart with colour-blind eyes too (Okabe and Ito 2008), over and over.
 std::string chart_colour(std::size_t index);
 
-// Where a logarithmic axis from `least` to `greatest` has its labels: 1, 2, 5, 10, 20..., or powers of ten alone where
-// those would be many.
+// Where a logarithmic axis from `least` to `greatest` has its labels: 1, 2, 5, 10, 20..., powers of ten alone where
+// those would be many, those of a linear axis where they would be fewer than three.
 std::vector<double> logarithmic_ticks(double least, double greatest);
 // The same of a linear axis: multiples of 1, 2 or 5 times a power of ten, at most seven of them.
 std::vector<double> linear_ticks(double least, double greatest);

@@ -99,6 +99,8 @@ TEST(Convergence, MeasuresTheKnownSlopeOfRandomPointsAndASteeperOneOfSobolPoints
 TEST(SvgChart, TicksAreRoundNumbersWithinTheRange) {
     EXPECT_THAT(logarithmic_ticks(0.9, 12.0), testing::Pointwise(testing::DoubleEq(), {1.0, 2.0, 5.0, 10.0}));
     EXPECT_THAT(logarithmic_ticks(0.009, 20.0), testing::Pointwise(testing::DoubleEq(), {0.01, 0.1, 1.0, 10.0}));
+    EXPECT_THAT(logarithmic_ticks(0.024, 0.029),
+                testing::Pointwise(testing::DoubleNear(1e-12), {0.024, 0.025, 0.026, 0.027, 0.028, 0.029}));
 }
 
 TEST(SvgChart, DrawsPointsWhereTheyBelongAndEscapesText) {
