@@ -17,8 +17,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Align = TerminalTable::Align;
 
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-Json number(const std::optional<double>& value) { return value ? number(*value) : Json(nullptr); }
+Json number(const std::optional<double>& value) { return value ? number_json(*value) : Json(nullptr); }
 
 std::string short_number(const std::optional<double>& value) { return value ? fmt::format("{:.4g}", *value) : "-"; }
 

@@ -9,13 +9,12 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/result_table.h"
+#include "experiments/run_json.h"
 
 namespace plumb {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 std::ptrdiff_t count_of(const std::vector<ClaimRecord>& records, ClaimVerdict verdict) {
     return std::ranges::count(records, to_string(verdict), &ClaimRecord::verdict);
@@ -50,14 +49,22 @@ std::string print_claims_json(const std::vector<ClaimResult>& results, bool quic
     for (const ClaimResult& result : results) {
         const ClaimRecord record = record_of(result, quick);
         const MeanSummary& summary = result.measured.summary;
-        Json entry = {{"experiment", record.experiment}, {"claim", record.claim},
-                      {"source", record.source},         {"test", record.test},
-                      {"measured", record.measured},     {"range", record.range},
-                      {"verdict", record.verdict},       {"reason", record.reason},
-                      {"mean", number(summary.mean)},    {"lower", number(summary.lower)},
-                      {"upper", number(summary.upper)},  {"cases", record.cases},
-                      {"missing", record.missing},       {"quick", record.quick},
-                      {"scenes", Json::array()},         {"values", Json::array()}};
+        Json entry = {{"experiment", record.experiment},
+                      {"claim", record.claim},
+                      {"source", record.source},
+                      {"test", record.test},
+                      {"measured", record.measured},
+                      {"range", record.range},
+                      {"verdict", record.verdict},
+                      {"reason", record.reason},
+                      {"mean", number_json(summary.mean)},
+                      {"lower", number_json(summary.lower)},
+                      {"upper", number_json(summary.upper)},
+                      {"cases", record.cases},
+                      {"missing", record.missing},
+                      {"quick", record.quick},
+                      {"scenes", Json::array()},
+                      {"values", Json::array()}};
         for (const auto& [scene, text] : record.scenes)
             entry["scenes"].push_back({{"scene", scene}, {"measured", text}});
         for (const MeasuredCase& value : result.measured.cases) {
@@ -66,7 +73,7 @@ std::string print_claims_json(const std::vector<ClaimResult>& results, bool quic
                                        {"plane", value.plane},
                                        {"truth", value.truth},
                                        {"method", value.method},
-                                       {"value", number(value.value)}});
+                                       {"value", number_json(value.value)}});
         }
         json.push_back(std::move(entry));
     }

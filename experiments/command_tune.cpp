@@ -93,12 +93,7 @@ std::string print_ratio(const std::vector<ViewCost>& before, const std::vector<V
 
 int run(Options options, const CommonOptions& common) {
     Experiment experiment = load_experiment(options.experiment);
-    if (options.quick) {
-        const std::vector<ExperimentScene> scenes = experiment.scenes;
-        make_quick(experiment);
-        experiment.scenes = scenes;  // all views are needed
-        experiment.quick = false;
-    }
+    if (options.quick) make_small(experiment);  // all views are needed
     const Method start = load_method(options.method);
     std::vector<FreeParameter> parameters;
     for (const std::string& text : options.free) parameters.push_back(parse_free_parameter(text, start));

@@ -65,8 +65,6 @@ constexpr const char* gain_note =
     "gain: how many times as many random points it would take for the error of Sobol points; slopes of log RMSE over "
     "log samples ± standard error over the seeds.";
 
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
 }  // namespace
 
 std::string print_convergence_table(const ConvergenceResults& results) {
@@ -118,7 +116,7 @@ std::string print_convergence_json(const ConvergenceResults& results) {
                           {"most_noise", experiment.most_noise}};
     for (const ConvergenceScene& scene : experiment.scenes) {
         json["experiment"]["scenes"].push_back(
-            {{"scene", scene.scene}, {"view", scene.view}, {"ao_radius", number(scene.ao_radius)}});
+            {{"scene", scene.scene}, {"view", scene.view}, {"ao_radius", number_json(scene.ao_radius)}});
     }
     json["curves"] = Json::array();
     for (const ConvergenceCurve& curve : results.curves) {
@@ -128,9 +126,9 @@ std::string print_convergence_json(const ConvergenceResults& results) {
                       {"points", name_of(curve.points)},
                       {"slope",
                        {{"mean", curve.slope.mean},
-                        {"standard_error", number(curve.slope.standard_error)},
-                        {"lower", number(curve.slope.lower)},
-                        {"upper", number(curve.slope.upper)},
+                        {"standard_error", number_json(curve.slope.standard_error)},
+                        {"lower", number_json(curve.slope.lower)},
+                        {"upper", number_json(curve.slope.upper)},
                         {"seeds", curve.slope.count}}},
                       {"rmse_at_one_sample", curve.rmse_at_one}};
         for (const int samples : experiment.samples)

@@ -116,9 +116,7 @@ private:
     }
 
     std::vector<Runner> runners_of(const ExperimentScene& entry, const Scene& scene, const std::string& plane) {
-        Quantities quantities = experiment_.quantities;
-        quantities.planes = {plane};
-        quantities.ao_radius = entry.ao_radius;
+        const Quantities quantities = quantities_of(experiment_, entry, plane);
         std::vector<Runner> runners;
         for (const Method& method : experiment_.methods) {
             if (!is_asked_for(thresholds_, {entry.scene, "", plane, method.name})) continue;

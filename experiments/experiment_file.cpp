@@ -11,6 +11,7 @@
 #include "experiments/config_values.h"
 #include "experiments/ladder.h"
 #include "experiments/scene_finder.h"
+#include "scenes/scene.h"
 #include "scenes/scene_error.h"
 
 namespace plumb {
@@ -250,7 +251,7 @@ std::vector<std::string> leave_out_absent_scenes(Experiment& experiment, const S
     return left_out;
 }
 
-void make_quick(Experiment& experiment) {
+void make_small(Experiment& experiment) {
     experiment.width = std::max(8, experiment.width / 4);
     experiment.height = std::max(8, experiment.height / 4);
     experiment.reference.samples = std::min(experiment.reference.samples, 64);
@@ -258,12 +259,31 @@ void make_quick(Experiment& experiment) {
     experiment.reference.target_error = 0.0;
     experiment.timing.repetitions = std::min(experiment.timing.repetitions, 3);
     std::erase_if(experiment.path_tracer_samples, [](int samples) { return samples > 4; });
+}
+
+void make_quick(Experiment& experiment) {
+    make_small(experiment);
     for (ExperimentScene& scene : experiment.scenes) {
         if (scene.views.size() > 1) scene.views.resize(1);
         if (scene.paths.size() > 1) scene.paths.resize(1);
         for (ExperimentPath& path : scene.paths) path.frames = std::min(path.frames, 3);
     }
     experiment.quick = true;
+}
+
+std::vector<std::string> views_of(const ExperimentScene& entry, const Scene& scene) {
+    std::vector<std::string> views = entry.views;
+    if (views.empty()) {
+        for (const Camera& camera : scene.cameras) views.push_back(camera.name);
+    }
+    return views;
+}
+
+Quantities quantities_of(const Experiment& experiment, const ExperimentScene& entry, const std::string& plane) {
+    Quantities quantities = experiment.quantities;
+    quantities.planes = {plane};
+    quantities.ao_radius = entry.ao_radius;
+    return quantities;
 }
 
 Method method_in_scene(const Method& method, const ExperimentScene& scene, const std::string& source) {

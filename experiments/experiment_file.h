@@ -15,6 +15,7 @@
 namespace plumb {
 
 class SceneFinder;
+struct Scene;
 
 // A walk along one of a scene's camera paths, frame by frame; instances that move are where they are at that time.
 struct ExperimentPath {
@@ -104,8 +105,16 @@ Experiment load_experiment(const std::filesystem::path& file);
 // SceneError where none would be left.
 std::vector<std::string> leave_out_absent_scenes(Experiment& experiment, const SceneFinder& finder);
 
-// The same question at a small size, for trying it out: a quarter of the resolution, few samples, one view per scene.
+// The same question at a small size, for trying it out: a quarter of the resolution and few samples...
+void make_small(Experiment& experiment);
+// ...and one view per scene.
 void make_quick(Experiment& experiment);
+
+// The views of the scene that the experiment asks for; all where it names none.
+std::vector<std::string> views_of(const ExperimentScene& entry, const Scene& scene);
+
+// What a pipeline is asked for so that it renders nothing but `plane`, with the radius that suits the scene.
+Quantities quantities_of(const Experiment& experiment, const ExperimentScene& entry, const std::string& plane);
 
 // The method as it runs in `scene`: with its separation, its radius and its overrides.
 Method method_in_scene(const Method& method, const ExperimentScene& scene, const std::string& source);

@@ -11,6 +11,7 @@
 #include "experiments/build_facts.h"
 #include "experiments/packed_plane.h"
 #include "experiments/picture_look.h"
+#include "experiments/run_json.h"
 #include "frames/image_error.h"
 #include "metrics/comparison.h"
 
@@ -19,12 +20,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 Json root(double mse) { return std::isfinite(mse) ? Json(std::sqrt(std::max(0.0, mse))) : Json(nullptr); }
 
 Json numbers(const std::vector<double>& values) {
     Json list = Json::array();
-    for (const double value : values) list.push_back(number(value));
+    for (const double value : values) list.push_back(number_json(value));
     return list;
 }
 
@@ -33,7 +33,7 @@ Json measures_json(const ResultRow& row) {
     Json list = Json::array();
     for (const std::string& name : measure_names()) {
         const auto found = std::ranges::find(row.measures, name, &std::pair<std::string, double>::first);
-        list.push_back(found == row.measures.end() ? Json(nullptr) : number(found->second));
+        list.push_back(found == row.measures.end() ? Json(nullptr) : number_json(found->second));
     }
     return list;
 }
@@ -52,12 +52,12 @@ Json regions_json(const ResultRow& row) {
 Json stability_json(const ResultRow& row) {
     if (!row.stability) return nullptr;
     const Stability& of = *row.stability;
-    return {{"flicker", number(of.flicker)},
-            {"flicker_lower", number(of.flicker_lower)},
-            {"flicker_upper", number(of.flicker_upper)},
-            {"method_warping", number(of.method_warping)},
-            {"truth_warping", number(of.truth_warping)},
-            {"temporal_variance", number(of.temporal_variance)}};
+    return {{"flicker", number_json(of.flicker)},
+            {"flicker_lower", number_json(of.flicker_lower)},
+            {"flicker_upper", number_json(of.flicker_upper)},
+            {"method_warping", number_json(of.method_warping)},
+            {"truth_warping", number_json(of.truth_warping)},
+            {"temporal_variance", number_json(of.temporal_variance)}};
 }
 
 std::string_view kind_of(const ResultRow& row) {
@@ -80,18 +80,18 @@ Json row_json(const ResultRow& row) {
             {"curve_value", row.curve_value},
             {"measured", row.measured},
             {"refusal", row.refusal},
-            {"rmse", row.measured ? number(row.rmse()) : none},
-            {"rmse_lower", number(row.rmse_lower())},
-            {"rmse_upper", number(row.rmse_upper())},
-            {"psnr", row.measured ? number(row.psnr) : none},
-            {"ssim", row.measured ? number(row.ssim) : none},
+            {"rmse", row.measured ? number_json(row.rmse()) : none},
+            {"rmse_lower", number_json(row.rmse_lower())},
+            {"rmse_upper", number_json(row.rmse_upper())},
+            {"psnr", row.measured ? number_json(row.psnr) : none},
+            {"ssim", row.measured ? number_json(row.ssim) : none},
             {"noise", root(row.noise_mse)},
             {"measures", measures_json(row)},
             {"regions", regions_json(row)},
             {"stability", stability_json(row)},
-            {"milliseconds", timed ? number(row.timing.median) : none},
-            {"milliseconds_lower", has_quartiles ? number(row.timing.lower_quartile) : none},
-            {"milliseconds_upper", has_quartiles ? number(row.timing.upper_quartile) : none},
+            {"milliseconds", timed ? number_json(row.timing.median) : none},
+            {"milliseconds_lower", has_quartiles ? number_json(row.timing.lower_quartile) : none},
+            {"milliseconds_upper", has_quartiles ? number_json(row.timing.upper_quartile) : none},
             {"bytes", row.gbuffer_bytes_per_pixel}};
 }
 
@@ -229,10 +229,10 @@ Json waterfalls_json(const RunResults& results) {
         Json bars = Json::array();
         for (const WaterfallBar& bar : waterfall.bars) {
             bars.push_back({{"label", bar.label},
-                            {"from", number(bar.from)},
-                            {"to", number(bar.to)},
-                            {"lower", number(bar.change_lower)},
-                            {"upper", number(bar.change_upper)},
+                            {"from", number_json(bar.from)},
+                            {"to", number_json(bar.to)},
+                            {"lower", number_json(bar.change_lower)},
+                            {"upper", number_json(bar.change_upper)},
                             {"note", bar.note}});
         }
         list.push_back({{"title", waterfall.title}, {"axis", waterfall.axis}, {"bars", bars}});

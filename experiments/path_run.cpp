@@ -87,8 +87,11 @@ struct PathRun::Series {
     std::unique_ptr<Pipeline> pipeline;
     int gbuffer_bytes_per_pixel = 0;
     ErrorSeries error;
-    std::map<std::string, ErrorSeries> regions;
-    std::map<std::string, std::size_t> region_pixels;
+    struct OfRegion {
+        ErrorSeries error;
+        std::size_t pixels = 0;
+    };
+    std::map<std::string, OfRegion> regions;
     PathStability stability;
     MeanMeasures measures;
     std::vector<FrameMeasure> frames;
@@ -138,9 +141,7 @@ std::vector<std::vector<PlaneImage>> PathRun::load_cells() const {
 
 void PathRun::make_pipelines(RunResults& results) {
     for (const std::unique_ptr<Series>& series : series_) {
-        Quantities quantities = experiment_.quantities;
-        quantities.planes = {series->plane};
-        quantities.ao_radius = entry_.ao_radius;
+        const Quantities quantities = quantities_of(experiment_, entry_, series->plane);
         const Method method =
             method_in_scene(*find_method(experiment_.methods, series->method), entry_, experiment_.file.string());
         try {
@@ -230,9 +231,12 @@ void PathRun::add(const PlaneImage& image, int frame, const Frame& truth, const 
             measure.rmse = std::sqrt(std::max(0.0, error->mse));
         for (const Region& region : regions) {
             if (region.pixels == 0) continue;
-            series.regions.try_emplace(region.name, SeriesOf::frames, series.settings)
-                .first->second.add(test, truth, image.plane, reference_samples_, &region.mask);
-            series.region_pixels[region.name] += region.pixels;
+            Series::OfRegion& of_region =
+                series.regions
+                    .try_emplace(region.name, Series::OfRegion{ErrorSeries(SeriesOf::frames, series.settings)})
+                    .first->second;
+            of_region.error.add(test, truth, image.plane, reference_samples_, &region.mask);
+            of_region.pixels += region.pixels;
         }
     }
     if (const std::optional<Flicker> flicker = series.stability.add(test, truth)) measure.flicker = flicker->rms;
@@ -273,8 +277,7 @@ void PathRun::write_rows(RunResults& results) {
     for (const std::unique_ptr<Series>& series : series_) {
         ResultRow row;
         row.scene = entry_.scene, row.path = path_.path, row.plane = series->plane, row.method = series->method;
-        const bool two_truths = has_limited_truth(series->plane) || series->plane == "total";
-        row.truth = two_truths ? "full" : "";
+        row.truth = full_truth_name(series->plane);
         describe_method(experiment_, entry_, series->method, row);
         row.reference_samples = reference_samples_;
         row.gbuffer_bytes_per_pixel = series->gbuffer_bytes_per_pixel;
@@ -284,11 +287,10 @@ void PathRun::write_rows(RunResults& results) {
         row.mse_lower = row.mse_upper = none;
         row.measured = true;
         if (series->error.members() > 0) add_error(series->error.error(), row);
-        for (const auto& [region, error] : series->regions) {
-            if (error.members() == 0) continue;
-            const ReferencedError over_frames = error.error();
-            row.regions.push_back(
-                {region, series->region_pixels.at(region), over_frames.mse, over_frames.lower, over_frames.upper});
+        for (const auto& [region, of_region] : series->regions) {
+            if (of_region.error.members() == 0) continue;
+            const ReferencedError error = of_region.error.error();
+            row.regions.push_back({region, of_region.pixels, error.mse, error.lower, error.upper});
         }
         row.frames = series->frames;
         const PathStabilityResult stability = series->stability.result();
@@ -315,8 +317,7 @@ void PathRun::write_pictures(RunResults& results) {
         PathPictures subject;
         subject.scene = entry_.scene, subject.path = path_.path, subject.plane = name;
         subject.frames_per_second = path_.frames_per_second;
-        const bool two_truths = has_limited_truth(name) || name == "total";
-        subject.truth = two_truths ? "full" : "";
+        subject.truth = full_truth_name(name);
         std::vector<const Image*> truths;
         for (const Image& image : truths_[plane]) truths.push_back(&image);
         results.path_pictures.push_back(write_path_pictures(std::move(subject), truths, methods, folder_));

@@ -20,8 +20,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
 // Typed, so that a reader need not parse texts; an infinite radius is the text "inf", as in TOML.
 Json parameters_of(const Method& method) {
     Method copy = method;
@@ -41,16 +39,16 @@ Json passes_of(const Timing& timing) {
 
 void add_path(const ResultRow& row, Json& json) {
     if (row.stability) {
-        json["stability"] = {{"flicker", number(row.stability->flicker)},
-                             {"flicker_lower", number(row.stability->flicker_lower)},
-                             {"flicker_upper", number(row.stability->flicker_upper)},
-                             {"method_warping", number(row.stability->method_warping)},
-                             {"truth_warping", number(row.stability->truth_warping)},
-                             {"temporal_variance", number(row.stability->temporal_variance)}};
+        json["stability"] = {{"flicker", number_json(row.stability->flicker)},
+                             {"flicker_lower", number_json(row.stability->flicker_lower)},
+                             {"flicker_upper", number_json(row.stability->flicker_upper)},
+                             {"method_warping", number_json(row.stability->method_warping)},
+                             {"truth_warping", number_json(row.stability->truth_warping)},
+                             {"temporal_variance", number_json(row.stability->temporal_variance)}};
     }
     for (const FrameMeasure& frame : row.frames) {
         json["frames"].push_back(
-            {{"time", frame.time}, {"rmse", number(frame.rmse)}, {"flicker", number(frame.flicker)}});
+            {{"time", frame.time}, {"rmse", number_json(frame.rmse)}, {"flicker", number_json(frame.flicker)}});
     }
 }
 
@@ -72,12 +70,12 @@ Json row_json(const ResultRow& row) {
     if (!row.measured) json["refusal"] = row.refusal;
     json["reference_samples"] = row.reference_samples;
     json["measures"] = Json::object();
-    for (const auto& [name, value] : row.measures) json["measures"][name] = number(value);
+    for (const auto& [name, value] : row.measures) json["measures"][name] = number_json(value);
     for (const RegionError& region : row.regions) {
         json["regions"][region.region] = {{"pixels", region.pixels},
-                                          {"unbiased_mse", number(region.mse)},
-                                          {"lower", number(region.mse_lower)},
-                                          {"upper", number(region.mse_upper)}};
+                                          {"unbiased_mse", number_json(region.mse)},
+                                          {"lower", number_json(region.mse_lower)},
+                                          {"upper", number_json(region.mse_upper)}};
     }
     add_path(row, json);
     json["milliseconds"] = {{"median", row.timing.median},
@@ -114,7 +112,7 @@ Json experiment_json(const Experiment& experiment) {
         Json entry = {{"scene", scene.scene},
                       {"views", scene.views},
                       {"ao_radius", scene.ao_radius},
-                      {"indirect_radius", number(scene.indirect_radius)},
+                      {"indirect_radius", number_json(scene.indirect_radius)},
                       {"minimum_separation", scene.minimum_separation}};
         for (const ExperimentPath& path : scene.paths) {
             entry["paths"].push_back({{"path", path.path},

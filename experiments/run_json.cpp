@@ -1,10 +1,16 @@
 #include "experiments/run_json.h"
 
+#include <cmath>
+
 #include <nlohmann/json.hpp>
 
 #include "experiments/build_facts.h"
 
 namespace plumb {
+
+nlohmann::ordered_json number_json(double value) {
+    return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+}
 
 nlohmann::ordered_json run_json(const std::string& command, const std::string& started, double seconds,
                                 const SystemFacts& system) {

@@ -9,6 +9,9 @@
 
 namespace plumb {
 
+// JSON has no infinities and no NaN: null stands for them.
+nlohmann::ordered_json number_json(double value);
+
 // program (build_facts() under their names: version, git, compiler, build_type, integrator_hash), command, started,
 // seconds, and machine.
 nlohmann::ordered_json run_json(const std::string& command, const std::string& started, double seconds,

@@ -47,7 +47,7 @@ RunResults run_experiment(const Experiment& experiment, const SceneFinder& finde
             results.scene_hashes[entry.scene] = fmt::format("{:016x}", scene.content_hash());
             const double from = part * static_cast<double>(i);
             // A frame of a path takes about as long as a view.
-            const auto views = static_cast<double>(entry.views.empty() ? scene.cameras.size() : entry.views.size());
+            const auto views = static_cast<double>(views_of(entry, scene).size());
             double frames = views;
             for (const ExperimentPath& path : entry.paths) frames += path.frames;
             const ProgressPart all{from, from + part};

@@ -34,10 +34,7 @@ SceneRun::SceneRun(const Experiment& experiment, const ExperimentScene& entry, c
       control_(control),
       tracer_(scene),
       references_(control.cache, control.progress, control.stop, control.threads),
-      views_(entry.views) {
-    if (views_.empty()) {
-        for (const Camera& camera : scene.cameras) views_.push_back(camera.name);
-    }
+      views_(views_of(entry, scene)) {
     if (views_.empty()) throw SceneError(fmt::format("scene '{}' has no view; add one to its scene file", scene.name));
     if (experiment.quick) views_.resize(1);
     for (const std::string& view : views_) scene.camera(view);  // throws for a name that is not there
@@ -124,13 +121,10 @@ void SceneRun::render_truths(const std::string& view, RunResults& results) {
 }
 
 void SceneRun::render_methods(const std::string& plane, RunResults& results) {
-    Quantities quantities = experiment_.quantities;
-    quantities.planes = {plane};
-    quantities.ao_radius = entry_.ao_radius;
-
-    std::vector<std::string> missing;  // views that no run before this one finished
+    const Quantities quantities = quantities_of(experiment_, entry_, plane);
+    std::map<std::string, std::string> missing;  // views that no run before this one finished, with their cells' keys
     for (const auto& [view, truths] : truths_) {
-        if (!load_cell(cell_key(view, plane))) missing.push_back(view);
+        if (std::string key = cell_key(view, plane); !load_cell(key)) missing.emplace(view, std::move(key));
     }
     if (missing.empty()) return;
     // One pipeline per method for this plane alone, so that its time is the time of what the plane needs.
@@ -152,7 +146,8 @@ void SceneRun::render_methods(const std::string& plane, RunResults& results) {
     }
     if (working.empty()) return;
 
-    for (const std::string& view : missing) {
+    for (const auto& [missing_view, key] : missing) {
+        const std::string& view = missing_view;  // captured below
         const auto truths = truths_.find(view);
         if (stopped()) return;
         show(measuring_progress(plane, 0.0), fmt::format("{}, {}: methods", view, plane));
@@ -182,7 +177,7 @@ void SceneRun::render_methods(const std::string& plane, RunResults& results) {
             for (std::size_t i = 0; i < images.size(); ++i) images[i].timing = std::move(timings[i]);
             // A cell with a failure is tried again by the next run.
             const bool whole = images.size() == experiment_.methods.size();
-            keep_cell(whole ? cell_key(view, plane) : "", std::move(images));
+            keep_cell(whole ? key : "", std::move(images));
         } catch (const std::exception& error) {
             fail("timing", error);
         }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "metrics/student.h"
 
@@ -35,20 +34,10 @@ MeanSummary summarise_mean(const std::vector<double>& values) {
     MeanSummary summary;
     summary.count = static_cast<int>(values.size());
     if (values.empty()) return summary;
-    double sum = 0.0;
-    for (const double value : values) sum += value;
-    summary.mean = sum / summary.count;
-    if (summary.count == 1) {
-        summary.standard_error = std::numeric_limits<double>::infinity();
-        summary.lower = -std::numeric_limits<double>::infinity();
-        summary.upper = std::numeric_limits<double>::infinity();
-        return summary;
-    }
-    double squares = 0.0;
-    for (const double value : values) squares += (value - summary.mean) * (value - summary.mean);
-    summary.standard_error = std::sqrt(squares / (summary.count - 1) / summary.count);
-    const double half_width = student_t(summary.count - 1) * summary.standard_error;
-    summary.lower = summary.mean - half_width, summary.upper = summary.mean + half_width;
+    const Estimate mean = student_mean(values);
+    summary.mean = mean.value, summary.lower = mean.lower, summary.upper = mean.upper;
+    summary.standard_error =
+        summary.count > 1 ? (mean.upper - mean.value) / student_t(summary.count - 1) : mean.upper - mean.value;
     return summary;
 }
 

@@ -46,7 +46,7 @@ struct TuningViews::Implementation {
     std::unique_ptr<GlContext> context;
     std::vector<std::unique_ptr<SceneViews>> scenes;
 
-    const Truth choose(const ViewTruths& truths) const {
+    Truth choose(const ViewTruths& truths) const {
         const std::vector<Truth> all = truths.of(plane);
         return limited && all.size() > 1 ? all[1] : all.front();
     }
@@ -64,10 +64,7 @@ TuningViews::TuningViews(const Experiment& experiment, const std::string& plane,
     for (std::size_t s = 0; s < experiment.scenes.size(); ++s) {
         auto views = std::make_unique<SceneViews>(
             SceneViews{&experiment.scenes[s], finder.load(experiment.scenes[s].scene), {}});
-        std::vector<std::string> names = views->entry->views;
-        if (names.empty()) {
-            for (const Camera& camera : views->scene.cameras) names.push_back(camera.name);
-        }
+        const std::vector<std::string> names = views_of(*views->entry, views->scene);
         const PathTracer tracer(views->scene);
         const ReferenceSettings full = full_truth_settings(experiment, *views->entry);
         const auto within = limited ? limited_truth_settings(experiment, *views->entry) : std::nullopt;
@@ -108,9 +105,7 @@ std::vector<ViewCost> TuningViews::costs(const Method& method, bool held_out) co
     for (const std::unique_ptr<SceneViews>& scene : implementation_->scenes) {
         if (std::ranges::none_of(scene->views, [&](const auto& view) { return view.name.held_out == held_out; }))
             continue;
-        Quantities quantities = experiment.quantities;
-        quantities.planes = {implementation_->plane};
-        quantities.ao_radius = scene->entry->ao_radius;
+        const Quantities quantities = quantities_of(experiment, *scene->entry, implementation_->plane);
         const Method in_scene = method_in_scene(method, *scene->entry, experiment.file.string());
         Pipeline pipeline(*implementation_->context, scene->scene, in_scene, quantities, experiment.width,
                           experiment.height);

@@ -31,6 +31,10 @@ ReferenceSettings base_settings(const Experiment& experiment, const ExperimentSc
 
 bool has_limited_truth(const std::string& plane) { return plane.starts_with("indirect") || plane == "irradiance"; }
 
+std::string full_truth_name(const std::string& plane) {
+    return has_limited_truth(plane) || plane == "total" ? "full" : "";
+}
+
 ReferenceSettings full_truth_settings(const Experiment& experiment, const ExperimentScene& scene) {
     ReferenceSettings settings = base_settings(experiment, scene);
     settings.quantities.planes = experiment.planes;
@@ -57,8 +61,7 @@ std::optional<ReferenceSettings> limited_truth_settings(const Experiment& experi
 
 std::vector<Truth> ViewTruths::of(const std::string& plane) const {
     const bool two = limited && has_limited_truth(plane);
-    const bool named = has_limited_truth(plane) || plane == "total";
-    std::vector<Truth> truths = {{named ? "full" : "", plane, &full.frame, full.samples}};
+    std::vector<Truth> truths = {{full_truth_name(plane), plane, &full.frame, full.samples}};
     if (two) truths.push_back({fmt::format("within {} m", limit), plane, &limited->frame, limited->samples});
     return truths;
 }

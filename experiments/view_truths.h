@@ -21,6 +21,9 @@ struct Truth {
 // Whether a plane changes with Quantities::indirect_radius and is not a sum with light that does not.
 bool has_limited_truth(const std::string& plane);
 
+// What the full truth of a plane is called: nothing where it could be no other.
+std::string full_truth_name(const std::string& plane);
+
 // What the path tracer is asked for so that it is the truth of `planes` in `scene`.
 ReferenceSettings full_truth_settings(const Experiment& experiment, const ExperimentScene& scene);
 // Nothing where no plane has a limited truth or the radius is infinite.
