@@ -16,20 +16,20 @@
 namespace plumb {
 namespace {
 
-struct Subject {
+struct PanelSubject {
     std::string scene, plane, truth;
-    bool operator==(const Subject&) const = default;
+    bool operator==(const PanelSubject&) const = default;
 };
 
-Subject subject_of(const ResultRow& row) { return {row.scene, row.plane, row.truth}; }
+PanelSubject subject_of(const ResultRow& row) { return {row.scene, row.plane, row.truth}; }
 
 // With a time and an error that logarithmic axes can show.
 bool is_drawable(const ResultRow& row) {
     return row.measured && row.oracle_layers < 0 && row.rmse() > 0.0 && row.timing.median > 0.0;
 }
 
-std::vector<Subject> subjects_of(const RunResults& results) {
-    std::vector<Subject> subjects;
+std::vector<PanelSubject> subjects_of(const RunResults& results) {
+    std::vector<PanelSubject> subjects;
     for (const ResultRow& row : results.rows) {
         if (is_drawable(row) && std::ranges::find(subjects, subject_of(row)) == subjects.end())
             subjects.push_back(subject_of(row));
@@ -48,7 +48,7 @@ struct AveragedPoint {
     CostPoint mean() const { return {geometric_mean(milliseconds), geometric_mean(rmse)}; }
 };
 
-std::vector<AveragedPoint> averaged_points(const RunResults& results, const Subject& subject) {
+std::vector<AveragedPoint> averaged_points(const RunResults& results, const PanelSubject& subject) {
     std::vector<AveragedPoint> points;
     for (const ResultRow& row : results.rows) {
         if (!is_drawable(row) || subject_of(row) != subject) continue;
@@ -76,7 +76,7 @@ void compare_with_path_tracer(const RunResults& results, EqualRow& row) {
     std::vector<double> errors, times;
     for (const ResultRow& measured : results.rows) {
         if (!is_drawable(measured) || measured.method != row.method) continue;
-        if (subject_of(measured) != Subject{row.scene, row.plane, row.truth}) continue;
+        if (subject_of(measured) != PanelSubject{row.scene, row.plane, row.truth}) continue;
         const CostCurve curve = curve_at(results, measured);
         if (const auto error = curve.error_at(measured.timing.median)) {
             errors.push_back(error->value / measured.rmse());
@@ -104,7 +104,7 @@ std::string ratio_text(double ratio, double lower, double upper, int extrapolate
     return fmt::format("{}{:.3g}{}", extrapolated > 0 ? "~" : "", ratio, interval);
 }
 
-Chart make_panel(const RunResults& results, const Subject& subject) {
+Chart make_panel(const RunResults& results, const PanelSubject& subject) {
     Chart chart;
     chart.title = fmt::format("{}: {}{}", subject.scene, subject.plane,
                               subject.truth.empty() ? "" : fmt::format(" ({})", subject.truth));
@@ -142,7 +142,7 @@ Chart make_panel(const RunResults& results, const Subject& subject) {
 
 std::vector<EqualRow> equal_rows(const RunResults& results) {
     std::vector<EqualRow> rows;
-    for (const Subject& subject : subjects_of(results)) {
+    for (const PanelSubject& subject : subjects_of(results)) {
         std::vector<AveragedPoint> methods = averaged_points(results, subject);
         std::erase_if(methods, [](const AveragedPoint& point) { return point.path_tracer_samples > 0; });
         std::vector<CostPoint> points;
@@ -207,7 +207,7 @@ std::string print_equal_rows_csv(const RunResults& results) {
 
 std::string print_accuracy_figure(const RunResults& results) {
     std::vector<Chart> charts;
-    for (const Subject& subject : subjects_of(results)) charts.push_back(make_panel(results, subject));
+    for (const PanelSubject& subject : subjects_of(results)) charts.push_back(make_panel(results, subject));
     if (charts.empty()) return "";
     const int columns = std::min<int>(3, static_cast<int>(charts.size()));
     return print_svg(charts, columns, fmt::format("{}: what accuracy costs", results.experiment.title),

@@ -1,5 +1,6 @@
 #include "experiments/check_values.h"
 
+#include "experiments/no_value.h"
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -28,14 +29,13 @@ bool matches(const RowPattern& pattern, const ResultRow& row) {
 
 // NaN where it does not exist.
 double measure_of(const ResultRow& row, const std::string& measure) {
-    constexpr double none = std::numeric_limits<double>::quiet_NaN();
     if (measure == "rmse") return row.rmse();
     if (measure == "mse") return row.mse;
-    if (measure == "flicker") return row.stability ? row.stability->flicker : none;
-    if (measure == "method_warping") return row.stability ? row.stability->method_warping : none;
-    if (measure == "temporal_variance") return row.stability ? row.stability->temporal_variance : none;
+    if (measure == "flicker") return row.stability ? row.stability->flicker : no_value;
+    if (measure == "method_warping") return row.stability ? row.stability->method_warping : no_value;
+    if (measure == "temporal_variance") return row.stability ? row.stability->temporal_variance : no_value;
     const auto found = std::ranges::find(row.measures, measure, &std::pair<std::string, double>::first);
-    return found == row.measures.end() ? none : found->second;
+    return found == row.measures.end() ? no_value : found->second;
 }
 
 RowValue region_value(const ResultRow& row, const Threshold& threshold) {

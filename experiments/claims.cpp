@@ -47,7 +47,7 @@ bool are_partners(const Cell& first, const Cell& second, const MeasuredQuantity&
     });
 }
 
-MeasuredCase case_of(const Cell& cell, double value) {
+MeasuredCase measured_case(const Cell& cell, double value) {
     return {cell.scene, cell.place, cell.plane, cell.truth, cell.method, value};
 }
 
@@ -71,7 +71,7 @@ void add_pairs(const std::vector<Cell>& cells, const MeasuredQuantity& quantity,
         const bool is_ratio = quantity.kind == QuantityKind::ratio;
         const double value = is_ratio ? first / second : first - second;
         if (std::isfinite(value) && !(is_ratio && !(first > 0.0 && second > 0.0))) {
-            measured.cases.push_back(case_of(cell, value));
+            measured.cases.push_back(measured_case(cell, value));
         } else {
             ++measured.missing;
         }
@@ -83,7 +83,7 @@ void add_values(const std::vector<Cell>& cells, const MeasuredQuantity& quantity
         if (!matches(cell, quantity, quantity.first)) continue;
         const double value = measure_of(cell, quantity.measure);
         if (std::isfinite(value)) {
-            measured.cases.push_back(case_of(cell, value));
+            measured.cases.push_back(measured_case(cell, value));
         } else {
             ++measured.missing;
         }
@@ -110,7 +110,7 @@ void add_slopes(const std::vector<Cell>& cells, const MeasuredQuantity& quantity
         if (curve.x.size() < 3) {
             ++measured.missing;
         } else {
-            MeasuredCase slope = case_of(*curve.cell, fit_line(curve.x, curve.y).slope);
+            MeasuredCase slope = measured_case(*curve.cell, fit_line(curve.x, curve.y).slope);
             slope.method = curve.cell->curve;
             measured.cases.push_back(slope);
         }

@@ -22,7 +22,7 @@
 namespace plumb {
 namespace {
 
-constexpr const char* examples = R"(Examples:
+constexpr const char* all_examples = R"(Examples:
   plumbline doctor                                        what works on this machine
   plumbline scenes                                        what there is to see
   plumbline render cornell --method two_layers            one view in OpenGL, with the time of each pass
@@ -83,7 +83,7 @@ int run_command_line(int argc, const char* const* argv) {
     CLI::App app("Plumbline measures real-time global illumination against a path-traced truth.", "plumbline");
     app.set_version_flag("--version",
                          fmt::format("plumbline {} ({})", build_facts().version, build_facts().git_describe));
-    app.footer(examples);
+    app.footer(all_examples);
     app.require_subcommand(1);
     app.fallthrough();
 

@@ -19,7 +19,7 @@
 namespace plumb {
 namespace {
 
-constexpr const char* examples = R"(Examples:
+constexpr const char* check_examples = R"(Examples:
   plumbline check experiments/ci.toml                        a build's gate: table, junit.xml, check.json
   plumbline check mine.toml --output out/gate --scenes-dir ~/scenes
   plumbline check mine.toml --calibrate                      limits from ten runs, never tighter than noise
@@ -27,14 +27,14 @@ constexpr const char* examples = R"(Examples:
 Exits with 1 where a limit is broken, a cell failed, or a method that must fail passes; with 2 where a threshold matches
 no row. docs/continuous_integration.md shows how to put it into your own CI, and what to do when it fails.)";
 
-struct Options {
+struct CheckCommandOptions {
     std::filesystem::path file;
     RunOptions run;
     CalibrationOptions calibration;
     bool calibrate = false;
 };
 
-int check(const Options& options, const CommonOptions& common) {
+int check(const CheckCommandOptions& options, const CommonOptions& common) {
     const CheckFile file = load_check_file(options.file);
     RunOptions run = options.run;
     if (run.output.empty()) run.output = std::filesystem::path("out") / file.experiment.name;
@@ -58,7 +58,7 @@ int check(const Options& options, const CommonOptions& common) {
     return code;
 }
 
-int calibrate(const Options& options, const CommonOptions& common) {
+int calibrate(const CheckCommandOptions& options, const CommonOptions& common) {
     const CheckFile file = load_check_file(options.file);
     if (file.thresholds_file.empty()) {
         throw ConfigError(
@@ -96,7 +96,7 @@ int calibrate(const Options& options, const CommonOptions& common) {
 void add_check_command(CLI::App& app, const CommonOptions& common, Action& action) {
     CLI::App* command =
         app.add_subcommand("check", "Hold an experiment against thresholds: a gate for CI")->group("Measure");
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<CheckCommandOptions>();
     command->add_option("file", options->file, "Experiment with thresholds (TOML)")->required()->type_name("FILE");
     command->add_option("-o,--output", options->run.output, "Results folder; out/NAME by default");
     add_cache_option(*command, options->run.cache_dir);
@@ -113,7 +113,7 @@ void add_check_command(CLI::App& app, const CommonOptions& common, Action& actio
     command->add_option("--threads", options->run.threads, "Threads of the path tracer; 0: all")
         ->check(CLI::NonNegativeNumber);
     add_backend_option(*command, options->run.backend);
-    command->footer(examples);
+    command->footer(check_examples);
     command->callback([options, &common, &action] {
         action = [options, &common] {
             return options->calibrate ? calibrate(*options, common) : check(*options, common);

@@ -23,7 +23,7 @@
 namespace plumb {
 namespace {
 
-constexpr const char* examples = R"help(Examples:
+constexpr const char* compare_examples = R"help(Examples:
   plumbline compare ours.exr truth.exr
   plumbline compare ours.png theirs.png --data-range 1 --json
   plumbline compare ours.exr truth.exr --heat-map out/errors
@@ -39,7 +39,7 @@ the frame before), position and depth there is also flicker, warping and tempora
 Where both have a plane depth their G-buffers are compared, layer by layer: hit_agreement, agreement, depth_error_*,
 normal_angle_* (degrees), albedo_error_* and motion_error_* (pixels), with * mean, median, p95, p99 or maximum.)help";
 
-struct Options {
+struct CompareCommandOptions {
     std::filesystem::path test, reference, heat_maps;
     GateOptions gate;
     double data_range = 0.0, heat_map_scale = 0.0;
@@ -47,7 +47,7 @@ struct Options {
     bool regions = false, json = false;
 };
 
-SequenceSettings settings_of(const Options& options, const ImagePair& first) {
+SequenceSettings settings_of(const CompareCommandOptions& options, const ImagePair& first) {
     SequenceSettings settings;
     settings.regions = options.regions;
     if (options.data_range > 0.0) settings.comparison.data_range = options.data_range;
@@ -56,7 +56,7 @@ SequenceSettings settings_of(const Options& options, const ImagePair& first) {
     return settings;
 }
 
-void write_heat_maps(const Options& options, const ImagePairs& images, const SequenceComparison& comparison) {
+void write_heat_maps(const CompareCommandOptions& options, const ImagePairs& images, const SequenceComparison& comparison) {
     const auto scales = error_map_scales(comparison.frames(), options.heat_map_scale);
     for (const ImagePair& pair : images.pairs) {
         const Frame test = read_frame(pair.test), reference = read_frame(pair.reference);
@@ -75,7 +75,7 @@ void print_only_in(const std::filesystem::path& where, const std::vector<std::st
     if (!names.empty()) fmt::print("only in '{}': {}\n", where.string(), fmt::join(names, ", "));
 }
 
-int compare(const Options& options) {
+int compare(const CompareCommandOptions& options) {
     const std::vector<Limit> limits = options.gate.limits();
     const ImagePairs images = find_pairs(options.test, options.reference);
     SequenceComparison comparison(settings_of(options, images.pairs.front()));
@@ -115,7 +115,7 @@ int compare(const Options& options) {
 void add_compare_command(CLI::App& app, const CommonOptions&, Action& action) {
     CLI::App* command =
         app.add_subcommand("compare", "Measure how far two images, or folders of frames, are apart")->group("Measure");
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<CompareCommandOptions>();
     command->add_option("test", options->test, "Image to judge (EXR, PNG, HDR...), or a folder of them")
         ->required()
         ->type_name("FILE|FOLDER");
@@ -145,7 +145,7 @@ void add_compare_command(CLI::App& app, const CommonOptions&, Action& action) {
                                                                              {"none", FlipRange::none}}))
         ->type_name("RANGE");
     options->gate.add_to(*command);
-    command->footer(examples);
+    command->footer(compare_examples);
     command->callback([options, &action] { action = [options] { return compare(*options); }; });
 }
 

@@ -28,7 +28,7 @@
 namespace plumb {
 namespace {
 
-constexpr const char* examples = R"help(Examples:
+constexpr const char* judge_examples = R"help(Examples:
   plumbline judge --scene clutter --path slide --frames 30 --size 480 270 --export-cameras cameras.json
   plumbline judge frames/ --scene clutter --path slide --planes total,ao --ao-radius 0.3
   plumbline judge image.exr --scene cornell --view front --regions --fail-above rmse=0.02,rmse@silhouettes=0.1
@@ -43,7 +43,7 @@ ao; direct.R.. is direct; likewise indirect, indirect.1.., irradiance, reflectio
 The truth's noise decides what can be told: "(?)" marks errors that it is too near to, and a line says how many samples
 would do. Truths are kept, so that the next build is judged in seconds.)help";
 
-struct Options {
+struct JudgeCommandOptions {
     std::filesystem::path images, export_cameras, heat_maps, cache;
     JudgeSettings judge;
     ViewOptions quantities;  // its quantities alone
@@ -62,7 +62,7 @@ std::vector<std::filesystem::path> files_of(const std::filesystem::path& images)
 }
 
 // What the first file says: the size of all frames, and the planes, unless options do.
-void read_first(const std::filesystem::path& file, const Options& options, JudgeSettings& settings) {
+void read_first(const std::filesystem::path& file, const JudgeCommandOptions& options, JudgeSettings& settings) {
     const Frame first = with_our_names(read_frame(file), settings.renamings, file.string());
     settings.cameras.width = first.width(), settings.cameras.height = first.height();
     if (!options.size.empty() && (options.size[0] != first.width() || options.size[1] != first.height())) {
@@ -77,7 +77,7 @@ void read_first(const std::filesystem::path& file, const Options& options, Judge
     }
 }
 
-JudgeSettings settings_of(const Options& options, const std::vector<std::filesystem::path>& files) {
+JudgeSettings settings_of(const JudgeCommandOptions& options, const std::vector<std::filesystem::path>& files) {
     JudgeSettings settings = options.judge;
     settings.renamings = parse_renamings(options.rename);
     settings.reference.quantities = options.quantities.read_quantities();
@@ -126,7 +126,7 @@ nlohmann::ordered_json json_of(const JudgeSettings& settings, const Judge& judge
     return json;
 }
 
-int judge(const Options& options, const CommonOptions& common) {
+int judge(const JudgeCommandOptions& options, const CommonOptions& common) {
     const std::vector<Limit> limits = options.gate.limits();
     const auto files = files_of(options.images);
     if (files.empty() && options.export_cameras.empty())
@@ -171,7 +171,7 @@ int judge(const Options& options, const CommonOptions& common) {
     return failed.empty() ? exit_fine : exit_failed;
 }
 
-void add_camera_options(CLI::App& command, Options& options) {
+void add_camera_options(CLI::App& command, JudgeCommandOptions& options) {
     const std::string group = "Cameras";
     CameraSequence& cameras = options.judge.cameras;
     command.add_option("--scene", options.judge.scene, "Built-in scene, scene of the scenes folder, or file")
@@ -203,7 +203,7 @@ void add_camera_options(CLI::App& command, Options& options) {
         ->group(group);
 }
 
-void add_truth_options(CLI::App& command, Options& options) {
+void add_truth_options(CLI::App& command, JudgeCommandOptions& options) {
     const std::string group = "Truth";
     ReferenceSettings& settings = options.judge.reference;
     command.add_option("--samples", settings.samples, "Samples per pixel (even), the most with a target error")
@@ -232,7 +232,7 @@ void add_truth_options(CLI::App& command, Options& options) {
 void add_judge_command(CLI::App& app, const CommonOptions& common, Action& action) {
     CLI::App* command =
         app.add_subcommand("judge", "Judge another renderer's frames by the path tracer's truth")->group("Measure");
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<JudgeCommandOptions>();
     command->add_option("images", options->images, "Image, or folder with one image per frame")
         ->type_name("FILE|FOLDER")
         ->check(CLI::ExistingPath);
@@ -255,7 +255,7 @@ void add_judge_command(CLI::App& app, const CommonOptions& common, Action& actio
     add_cache_option(*command, options->cache);
     options->quantities.add_quantities_to(*command);
     options->judge.comparison.comparison.flip = FlipRange::by_plane;
-    command->footer(examples);
+    command->footer(judge_examples);
     command->callback([options, &common, &action] { action = [options, &common] { return judge(*options, common); }; });
 }
 

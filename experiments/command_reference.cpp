@@ -19,7 +19,7 @@
 namespace plumb {
 namespace {
 
-constexpr const char* examples = R"(Examples:
+constexpr const char* reference_examples = R"(Examples:
   plumbline reference cornell --samples 1024
   plumbline reference colonnade --view court --target-error 0.01 --planes ao,indirect,total
   plumbline reference sponza.toml --seed 7 --threads 4 --output out/sponza
@@ -168,7 +168,7 @@ void add_reference_command(CLI::App& app, const CommonOptions& common, Action& a
     CLI::App* command = app.add_subcommand("reference", "Path trace one view: the truth")->group("Render");
     auto options = std::make_shared<ReferenceOptions>();
     options->add_to(*command);
-    command->footer(examples);
+    command->footer(reference_examples);
     command->callback([options, &common, &action] {
         action = [options, &common] {
             return options->merge.empty() ? render(*options, common) : merge(*options, common);

@@ -24,7 +24,7 @@
 namespace plumb {
 namespace {
 
-constexpr const char* examples = R"(Examples:
+constexpr const char* render_examples = R"(Examples:
   plumbline render cornell --method two_layers
   plumbline render clutter --method one_layer --set ao.samples=50 --set ao.blur.radius=0 --explain
   plumbline render cornell --path strafe --time 0.5
@@ -32,7 +32,7 @@ constexpr const char* examples = R"(Examples:
   plumbline render colonnade --method mine.toml --backend osmesa --planes total,layer2.depth
   plumbline render cornell --print-method          the method with all its parameters, as TOML)";
 
-struct Options {
+struct RenderCommandOptions {
     ViewOptions view;
     std::string method = "two_layers";
     std::vector<std::string> assignments;
@@ -72,7 +72,7 @@ void print_timing(const Timing& timing, const GlInfo& info) {
 }
 
 // The frame at --time after those before it, so that what the method keeps from frame to frame has come about.
-RasterResult render_last_frame(Pipeline& pipeline, const Options& options, const Scene& scene, const Method& method,
+RasterResult render_last_frame(Pipeline& pipeline, const RenderCommandOptions& options, const Scene& scene, const Method& method,
                                const Frame* truth) {
     const int frames = options.frames > 0 ? options.frames : frames_to_settle(method);
     if (frames == 1) return pipeline.render(options.view.make_view(scene), nullptr, truth);
@@ -91,7 +91,7 @@ RasterResult render_last_frame(Pipeline& pipeline, const Options& options, const
     return pipeline.render({.now = at(frames - 1), .previous = at(frames - 2), .next = at(frames), .truth = truth});
 }
 
-int render(const Options& options, const CommonOptions& common) {
+int render(const RenderCommandOptions& options, const CommonOptions& common) {
     Method method = load_method(options.method);
     for (const std::string& assignment : options.assignments) set_method_parameter(method, assignment);
     if (options.print_method) {
@@ -128,7 +128,7 @@ int render(const Options& options, const CommonOptions& common) {
 
 void add_render_command(CLI::App& app, const CommonOptions& common, Action& action) {
     CLI::App* command = app.add_subcommand("render", "Render one view in OpenGL with a method")->group("Render");
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<RenderCommandOptions>();
     options->view.add_to(*command, {"ao", "direct", "indirect", "total"});
     const std::string group = "Method";
     command->add_option("--method", options->method, "Built-in method or TOML file")
@@ -158,7 +158,7 @@ void add_render_command(CLI::App& app, const CommonOptions& common, Action& acti
         ->check(CLI::Range(0, 100000))
         ->capture_default_str();
     add_backend_option(*command, options->backend);
-    command->footer(examples);
+    command->footer(render_examples);
     command->callback(
         [options, &common, &action] { action = [options, &common] { return render(*options, common); }; });
 }

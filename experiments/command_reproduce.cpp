@@ -21,7 +21,7 @@
 namespace plumb {
 namespace {
 
-constexpr const char* examples = R"(Examples:
+constexpr const char* reproduce_examples = R"(Examples:
   plumbline reproduce --list                          what there is, and where in the seeds it stands
   plumbline reproduce thesis-gbuffer-time             one of them: figures, the original's numbers, claims
   plumbline reproduce --all --scenes-dir ~/scenes     all of them, and the table of claims
@@ -30,7 +30,7 @@ constexpr const char* examples = R"(Examples:
 Each writes OUTPUT/NAME/: README.md, figures as SVG, PNG and CSV, numbers.csv, claims.json, and the run's own page in
 run/. Exits with 1 where cells failed; claims that fail are a finding, not a failure.)";
 
-struct Options {
+struct ReproduceCommandOptions {
     std::vector<std::string> names;
     RunOptions run;
     std::filesystem::path output = "out/reproduce", claims_folder, report;
@@ -81,7 +81,7 @@ void write_claims(const std::filesystem::path& folder, const std::filesystem::pa
 }
 
 // Exit code of one reproduction.
-int reproduce(const Options& options, const CommonOptions& common, const std::string& name) {
+int reproduce(const ReproduceCommandOptions& options, const CommonOptions& common, const std::string& name) {
     const Reproduction reproduction = load_reproduction(name);
     const std::filesystem::path folder = options.output / reproduction.name;
     require_writable_folder(folder);
@@ -110,7 +110,7 @@ int reproduce(const Options& options, const CommonOptions& common, const std::st
     return measurements.failures.empty() ? exit_fine : exit_failed;
 }
 
-int run(const Options& options, const CommonOptions& common) {
+int run(const ReproduceCommandOptions& options, const CommonOptions& common) {
     if (options.list) return print_list();
     if (!options.claims_folder.empty()) {
         write_claims(options.claims_folder, options.report);
@@ -135,7 +135,7 @@ void add_reproduce_command(CLI::App& app, const CommonOptions& common, Action& a
     CLI::App* command =
         app.add_subcommand("reproduce", "Make the seeds' figures and tables again, and test what they claim")
             ->group("Measure");
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<ReproduceCommandOptions>();
     command->add_option("names", options->names, "What to reproduce: names (--list), or experiment files with claims")
         ->type_name("NAME");
     command->add_flag("--all", options->all, "Everything there is, then the table of claims");
@@ -153,7 +153,7 @@ void add_reproduce_command(CLI::App& app, const CommonOptions& common, Action& a
     command->add_option("--threads", options->run.threads, "Threads of the path tracer; 0: all")
         ->check(CLI::NonNegativeNumber);
     add_backend_option(*command, options->run.backend);
-    command->footer(examples);
+    command->footer(reproduce_examples);
     command->callback([options, &common, &action] { action = [options, &common] { return run(*options, common); }; });
 }
 

@@ -27,7 +27,7 @@
 namespace plumb {
 namespace {
 
-constexpr const char* examples = R"(Examples:
+constexpr const char* run_examples = R"(Examples:
   plumbline run experiments/one_vs_two_layers.toml
   plumbline run experiments/one_vs_two_layers.toml --quick          a look at it within a minute
   plumbline run experiments/convergence.toml                     how fast the truth comes: a figure
@@ -36,7 +36,7 @@ constexpr const char* examples = R"(Examples:
   plumbline run mine.toml --output out/mine --scenes-dir ~/scenes
 Exits with 1 where cells failed (they are listed) or a repeated run came out otherwise, with 130 where it was interrupted.)";
 
-struct Options {
+struct RunCommandOptions {
     std::filesystem::path experiment;
     RunOptions run;
     bool quick = false, no_frames = false;
@@ -48,7 +48,7 @@ void print_question(const std::string& title, const std::string& question) {
 }
 
 // What all kinds of experiment share.
-RunOptions run_options_of(const Options& options, const std::string& name) {
+RunOptions run_options_of(const RunCommandOptions& options, const std::string& name) {
     RunOptions run = options.run;
     if (run.output.empty()) run.output = std::filesystem::path("out") / name;
     run.write_frames = !options.no_frames;
@@ -58,7 +58,7 @@ RunOptions run_options_of(const Options& options, const std::string& name) {
     return run;
 }
 
-int run_convergence(const Options& options, const CommonOptions& common, ConvergenceExperiment experiment) {
+int run_convergence(const RunCommandOptions& options, const CommonOptions& common, ConvergenceExperiment experiment) {
     if (options.quick) make_quick(experiment);
     const RunOptions run_options = run_options_of(options, experiment.name);
     print_question(experiment.title, experiment.question);
@@ -74,7 +74,7 @@ int run_convergence(const Options& options, const CommonOptions& common, Converg
     return exit_fine;
 }
 
-int run_generation(const Options& options, const CommonOptions& common, GenerationExperiment experiment) {
+int run_generation(const RunCommandOptions& options, const CommonOptions& common, GenerationExperiment experiment) {
     if (options.quick) make_quick(experiment);
     const RunOptions run_options = run_options_of(options, experiment.name);
     print_question(experiment.title, experiment.question);
@@ -138,7 +138,7 @@ int exit_code_of(const RunResults& results) {
 }
 
 // A run as its results.json tells it.
-int repeat(const Options& options, const CommonOptions& common) {
+int repeat(const RunCommandOptions& options, const CommonOptions& common) {
     const RecordedRun recorded = read_recorded_run(options.experiment);
     RunOptions run_options = run_options_of(options, recorded.experiment.name);
     run_options.experiment_text = recorded.experiment_text;
@@ -158,7 +158,7 @@ int repeat(const Options& options, const CommonOptions& common) {
     return apart.rows_apart.empty() ? exit_code_of(results) : exit_failed;
 }
 
-int run(const Options& options, const CommonOptions& common) {
+int run(const RunCommandOptions& options, const CommonOptions& common) {
     if (options.experiment.extension() == ".json") return repeat(options, common);
     const std::string text = read_config_text(options.experiment);
     const ConfigValue table = parse_config(text, options.experiment.string());
@@ -181,7 +181,7 @@ int run(const Options& options, const CommonOptions& common) {
 
 void add_run_command(CLI::App& app, const CommonOptions& common, Action& action) {
     CLI::App* command = app.add_subcommand("run", "Run an experiment: table, files and page")->group("Measure");
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<RunCommandOptions>();
     command->add_option("experiment", options->experiment, "Experiment file (TOML), or the results.json of a run")
         ->required()
         ->type_name("FILE");
@@ -193,7 +193,7 @@ void add_run_command(CLI::App& app, const CommonOptions& common, Action& action)
     command->add_option("--threads", options->run.threads, "Threads of the path tracer; 0: all")
         ->check(CLI::NonNegativeNumber);
     add_backend_option(*command, options->run.backend);
-    command->footer(examples);
+    command->footer(run_examples);
     command->callback([options, &common, &action] { action = [options, &common] { return run(*options, common); }; });
 }
 

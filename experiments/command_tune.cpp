@@ -21,14 +21,14 @@
 namespace plumb {
 namespace {
 
-constexpr const char* examples = R"(Examples:
+constexpr const char* tune_examples = R"(Examples:
   plumbline tune two_layers --on experiments/one_vs_two_layers.toml --plane ao --free ao.intensity=0.25..2 --free ao.blur.radius=0..6
   plumbline tune mine.toml --on experiments/one_vs_two_layers.toml --plane ao --free ao.samples=4..40 --free ao.blur.radius=0..6 --budget 30
 The experiment gives scenes, views, radii, truths and resolution; its methods are not used. Every other view of each scene is
 held out: it judges the result and has no part in it. A scene's own overrides win over the method, so what is tuned must not
 be among them.)";
 
-struct Options {
+struct TuneCommandOptions {
     std::string method, plane = "ao", name;
     std::filesystem::path experiment, output;
     std::vector<std::string> free;
@@ -91,7 +91,7 @@ std::string print_ratio(const std::vector<ViewCost>& before, const std::vector<V
                        ratio.upper, ratio.count);
 }
 
-int run(Options options, const CommonOptions& common) {
+int run(TuneCommandOptions options, const CommonOptions& common) {
     Experiment experiment = load_experiment(options.experiment);
     if (options.quick) make_small(experiment);  // all views are needed
     const Method start = load_method(options.method);
@@ -148,7 +148,7 @@ int run(Options options, const CommonOptions& common) {
 void add_tune_command(CLI::App& app, const CommonOptions& common, Action& action) {
     CLI::App* command =
         app.add_subcommand("tune", "Find the parameters of a method that make its error smallest")->group("Measure");
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<TuneCommandOptions>();
     command->add_option("method", options->method, "Method: a name or a TOML file")->required();
     command->add_option("--on", options->experiment, "Experiment whose scenes, views and truths are used")
         ->required()
@@ -175,7 +175,7 @@ void add_tune_command(CLI::App& app, const CommonOptions& common, Action& action
         ->check(CLI::NonNegativeNumber);
     add_cache_option(*command, options->run.cache_dir);
     add_backend_option(*command, options->run.backend);
-    command->footer(examples);
+    command->footer(tune_examples);
     command->callback([options, &common, &action] { action = [options, &common] { return run(*options, common); }; });
 }
 

@@ -15,6 +15,9 @@
 
 namespace plumb {
 
+// For numbers without a largest value.
+inline constexpr double no_limit = std::numeric_limits<double>::infinity();
+
 struct ConfigValue;
 struct ConfigMember;
 using ConfigArray = std::vector<ConfigValue>;

@@ -28,9 +28,9 @@ std::vector<double> mse_at(const ConvergenceCurve& curve, int samples) {
     return found;
 }
 
-class Runner {
+class ConvergenceRunner {
 public:
-    Runner(const ConvergenceExperiment& experiment, const RunOptions& options)
+    ConvergenceRunner(const ConvergenceExperiment& experiment, const RunOptions& options)
         : experiment_(experiment), options_(options) {
         double samples = 0.0;
         for (const int count : experiment.samples) samples += count;
@@ -168,7 +168,7 @@ ConvergenceResults run_convergence(const ConvergenceExperiment& experiment, cons
     results.system = read_system_facts();
     results.command = options.command;
     results.started = utc_now();
-    Runner runner(experiment, options);
+    ConvergenceRunner runner(experiment, options);
     for (const ConvergenceScene& entry : experiment.scenes) {
         if (!runner.stopped()) runner.run(entry, finder, results.curves);
     }

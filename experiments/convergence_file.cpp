@@ -1,7 +1,6 @@
 #include "experiments/convergence_file.h"
 
 #include <algorithm>
-#include <limits>
 
 #include <fmt/format.h>
 
@@ -9,8 +8,6 @@
 
 namespace plumb {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // What has noise; all of a G-buffer is exact.
 const std::vector<std::string> noisy_planes = {"ao",         "direct",     "indirect",   "indirect.1", "indirect.2",
@@ -20,7 +17,7 @@ ConvergenceScene read_scene(ConfigReader& reader) {
     ConvergenceScene scene;
     scene.scene = reader.required_text("scene");
     scene.view = reader.text("view", "");
-    scene.ao_radius = static_cast<float>(reader.number("ao_radius", scene.ao_radius, 1e-6, infinity));
+    scene.ao_radius = static_cast<float>(reader.number("ao_radius", scene.ao_radius, 1e-6, no_limit));
     reader.finish();
     return scene;
 }

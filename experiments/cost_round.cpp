@@ -25,7 +25,7 @@ bool is_asked_for(const std::vector<Threshold>& thresholds, const CostRatio& cel
 }
 
 // One method for one plane, ready to be timed.
-struct Runner {
+struct CostRunner {
     std::unique_ptr<Pipeline> pipeline;
     std::string method;
     int frames_to_settle = 1;
@@ -38,9 +38,9 @@ double frame_milliseconds(Pipeline& pipeline, const View& view) {
 }
 
 // The methods of `runners` on one view, in turn with the workload.
-std::vector<CostRatio> time_in_turn(CalibratingWorkload& workload, const std::vector<Runner*>& runners,
+std::vector<CostRatio> time_in_turn(CalibratingWorkload& workload, const std::vector<CostRunner*>& runners,
                                     const View& view, const CostRatio& cell, const ExperimentTiming& timing) {
-    for (const Runner* runner : runners) {
+    for (const CostRunner* runner : runners) {
         const int frames = std::max(timing.warm_up, runner->frames_to_settle);
         for (int frame = 0; frame < frames; ++frame) frame_milliseconds(*runner->pipeline, view);
     }
@@ -97,12 +97,12 @@ private:
     bool stopped() const { return stop_ && stop_->load(); }
 
     void time_plane(const ExperimentScene& entry, const Scene& scene, const std::string& plane) {
-        std::vector<Runner> runners = runners_of(entry, scene, plane);
+        std::vector<CostRunner> runners = runners_of(entry, scene, plane);
         for (const Camera& camera : scene.cameras) {
             const bool wanted = entry.views.empty() || std::ranges::find(entry.views, camera.name) != entry.views.end();
             if (!wanted || stopped()) continue;
-            std::vector<Runner*> asked;
-            for (Runner& runner : runners) {
+            std::vector<CostRunner*> asked;
+            for (CostRunner& runner : runners) {
                 if (is_asked_for(thresholds_, {entry.scene, camera.name, plane, runner.method}))
                     asked.push_back(&runner);
             }
@@ -115,9 +115,9 @@ private:
         }
     }
 
-    std::vector<Runner> runners_of(const ExperimentScene& entry, const Scene& scene, const std::string& plane) {
+    std::vector<CostRunner> runners_of(const ExperimentScene& entry, const Scene& scene, const std::string& plane) {
         const Quantities quantities = quantities_of(experiment_, entry, plane);
-        std::vector<Runner> runners;
+        std::vector<CostRunner> runners;
         for (const Method& method : experiment_.methods) {
             if (!is_asked_for(thresholds_, {entry.scene, "", plane, method.name})) continue;
             const auto fail = [&](std::string_view why) {

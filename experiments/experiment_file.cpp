@@ -17,8 +17,6 @@
 namespace plumb {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 // Planes that both sides can deliver and that have a difference worth measuring. Positions in the list mean nothing.
 const std::vector<std::string> comparable_planes = {
     "ao",       "direct",       "indirect",      "indirect.1",    "indirect.2", "indirect.3",
@@ -49,9 +47,9 @@ ExperimentScene read_scene(ConfigReader& reader, const ExperimentScene& defaults
     scene.optional = reader.boolean("optional", false);
     scene.views = reader.texts("views", {});
     for (ConfigReader& path : reader.tables("paths")) scene.paths.push_back(read_path(path));
-    scene.ao_radius = static_cast<float>(reader.number("ao_radius", defaults.ao_radius, 1e-6, infinity));
+    scene.ao_radius = static_cast<float>(reader.number("ao_radius", defaults.ao_radius, 1e-6, no_limit));
     scene.indirect_radius =
-        static_cast<float>(reader.number("indirect_radius", defaults.indirect_radius, 1e-6, infinity));
+        static_cast<float>(reader.number("indirect_radius", defaults.indirect_radius, 1e-6, no_limit));
     scene.minimum_separation =
         static_cast<float>(reader.number("minimum_separation", defaults.minimum_separation, 0.0, 1e6));
     if (const ConfigValue* overrides = reader.value("method")) {
@@ -172,9 +170,9 @@ Experiment parse_experiment(const ConfigValue& table, const std::filesystem::pat
     ConfigReader quantities = reader.table("quantities");
     experiment.quantities = read_quantities(quantities);
     ExperimentScene defaults;
-    defaults.ao_radius = static_cast<float>(quantities.number("ao_radius", defaults.ao_radius, 1e-6, infinity));
+    defaults.ao_radius = static_cast<float>(quantities.number("ao_radius", defaults.ao_radius, 1e-6, no_limit));
     defaults.indirect_radius =
-        static_cast<float>(quantities.number("indirect_radius", defaults.indirect_radius, 1e-6, infinity));
+        static_cast<float>(quantities.number("indirect_radius", defaults.indirect_radius, 1e-6, no_limit));
     defaults.minimum_separation =
         static_cast<float>(quantities.number("minimum_separation", defaults.minimum_separation, 0.0, 1e6));
     quantities.finish();

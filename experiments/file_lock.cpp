@@ -14,7 +14,7 @@
 namespace plumb {
 namespace {
 
-[[noreturn]] void fail(const std::filesystem::path& file, int error) {
+[[noreturn]] void fail_lock(const std::filesystem::path& file, int error) {
     throw ImageError(
         fmt::format("cannot lock '{}': {}; choose a folder that can be written", file.string(), std::strerror(error)));
 }
@@ -25,7 +25,7 @@ FileLock::FileLock(const std::filesystem::path& file, const std::function<void()
     std::error_code error;
     std::filesystem::create_directories(file.parent_path(), error);
     descriptor_ = ::open(file.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0644);
-    if (descriptor_ < 0) fail(file, errno);
+    if (descriptor_ < 0) fail_lock(file, errno);
     if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return;
     if (errno == EWOULDBLOCK && on_wait) on_wait();
     int result = 0;
@@ -35,7 +35,7 @@ FileLock::FileLock(const std::filesystem::path& file, const std::function<void()
     if (result != 0) {
         const int reason = errno;
         ::close(descriptor_);
-        fail(file, reason);
+        fail_lock(file, reason);
     }
 }
 

@@ -2,20 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <optional>
 
 #include <fmt/format.h>
 
+#include "experiments/no_value.h"
 #include "experiments/statistics.h"
 #include "experiments/svg_chart.h"
 #include "experiments/terminal_table.h"
 
 namespace plumb {
 namespace {
-
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 Ladder read_ladder(ConfigReader& reader, const Experiment& experiment) {
     Ladder ladder;
@@ -104,7 +102,7 @@ std::vector<Waterfall> climb(const std::vector<Ladder>& ladders, const RunResult
                 const Rung* above = rungs.size() > 1 ? &rungs[rungs.size() - 2] : nullptr;
                 const std::optional<Step> step = step_between(above, rungs.back());
                 if (!step) break;
-                WaterfallBar bar{name, step->from, step->to, none, none, note_of(*step)};
+                WaterfallBar bar{name, step->from, step->to, no_value, no_value, note_of(*step)};
                 if (step->change.count > 1)
                     bar.change_lower = step->change.lower, bar.change_upper = step->change.upper;
                 waterfall.bars.push_back(std::move(bar));

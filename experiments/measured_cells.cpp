@@ -9,23 +9,22 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "experiments/no_value.h"
 #include "experiments/result_files.h"
 
 namespace plumb {
 namespace {
 
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
-
 // The limit differs from scene to scene, the question does not.
-std::string truth_kind(const std::string& truth) { return truth.starts_with("within") ? "limited" : truth; }
+std::string truth_class(const std::string& truth) { return truth.starts_with("within") ? "limited" : truth; }
 
 double plain_measure(const Cell& cell, std::string_view measure) {
     if (!measure.ends_with('*')) {
         const auto found = std::ranges::find(cell.values, measure, &std::pair<std::string, double>::first);
-        return found == cell.values.end() ? none : found->second;
+        return found == cell.values.end() ? no_value : found->second;
     }
     measure.remove_suffix(1);
-    double sum = none;
+    double sum = no_value;
     for (const auto& [name, value] : cell.values) {
         if (name.starts_with(measure)) sum = std::isnan(sum) ? value : sum + value;
     }
@@ -100,7 +99,7 @@ double measure_of(const Cell& cell, std::string_view measure) {
 std::vector<Cell> cells_of(const RunResults& results) {
     std::vector<Cell> cells;
     for (const ResultRow& row : results.rows) {
-        Cell cell{row.scene, row.place(), row.plane, truth_kind(row.truth), row.method, row.curve};
+        Cell cell{row.scene, row.place(), row.plane, truth_class(row.truth), row.method, row.curve};
         if (!row.curve.empty()) cell.parameter = row.curve_value;
         if (row.path_tracer_samples > 0) cell.curve = "path tracer", cell.parameter = row.path_tracer_samples;
         if (row.measured) add_errors(row, cell);

@@ -2,14 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 
 #include <fmt/format.h>
 
 namespace plumb {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 template <class Enumeration>
 MethodChoice choice(Enumeration& value, std::vector<std::string> names) {
@@ -43,7 +40,7 @@ void add_reflections(std::vector<MethodParameter>& parameters, ReflectionSetting
                           {"reflections.max_steps", &reflections.max_steps, 1, 16384},
                           {"reflections.refinement_steps", &reflections.refinement_steps, 0, 16},
                           {"reflections.thickness", &reflections.thickness, 0, 1e6},
-                          {"reflections.max_distance", &reflections.max_distance, 1e-6, infinity},
+                          {"reflections.max_distance", &reflections.max_distance, 1e-6, no_limit},
                           {"reflections.bias", &reflections.bias, 0, 1e3},
                           {"reflections.test_hit_normal", &reflections.test_hit_normal},
                           {"reflections.border_fade", &reflections.border_fade, 0, 4096},
@@ -254,7 +251,7 @@ std::vector<MethodParameter> method_parameters(Method& m) {
                           {"radiosity.samples", &m.radiosity.samples, 1, 1000},
                           {"radiosity.layers", &m.radiosity.layers, 1, 2},
                           {"radiosity.emitters_shine", &m.radiosity.emitters_shine},
-                          {"radiosity.radius", &m.radiosity.radius, 1e-6, infinity},
+                          {"radiosity.radius", &m.radiosity.radius, 1e-6, no_limit},
                           {"radiosity.spread_pixels", &m.radiosity.spread_pixels, 0, 4096},
                           {"radiosity.test_tap_normal", &m.radiosity.test_tap_normal},
                           {"radiosity.normalisation", choice(m.radiosity.normalisation, {"hits", "samples"})},

@@ -20,7 +20,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json root(double mse) { return std::isfinite(mse) ? Json(std::sqrt(std::max(0.0, mse))) : Json(nullptr); }
+Json root_json(double mse) { return std::isfinite(mse) ? Json(std::sqrt(std::max(0.0, mse))) : Json(nullptr); }
 
 Json numbers(const std::vector<double>& values) {
     Json list = Json::array();
@@ -42,9 +42,9 @@ Json regions_json(const ResultRow& row) {
     Json regions = Json::object();
     for (const RegionError& region : row.regions) {
         regions[region.region] = {{"pixels", region.pixels},
-                                  {"rmse", root(region.mse)},
-                                  {"lower", root(region.mse_lower)},
-                                  {"upper", root(region.mse_upper)}};
+                                  {"rmse", root_json(region.mse)},
+                                  {"lower", root_json(region.mse_lower)},
+                                  {"upper", root_json(region.mse_upper)}};
     }
     return regions;
 }
@@ -64,7 +64,7 @@ std::string_view kind_of(const ResultRow& row) {
     return row.is_method() ? "method" : row.oracle_layers >= 0 ? "oracle" : "path tracer";
 }
 
-Json row_json(const ResultRow& row) {
+Json page_row(const ResultRow& row) {
     const bool timed = row.oracle_layers < 0;
     const bool has_quartiles = timed && row.timing.repetitions > 1;
     const Json none = nullptr;
@@ -85,7 +85,7 @@ Json row_json(const ResultRow& row) {
             {"rmse_upper", number_json(row.rmse_upper())},
             {"psnr", row.measured ? number_json(row.psnr) : none},
             {"ssim", row.measured ? number_json(row.ssim) : none},
-            {"noise", root(row.noise_mse)},
+            {"noise", root_json(row.noise_mse)},
             {"measures", measures_json(row)},
             {"regions", regions_json(row)},
             {"stability", stability_json(row)},
@@ -338,7 +338,7 @@ PageData page_data(const RunResults& results, const std::filesystem::path& folde
     }
     json["measure_names"] = measure_names();
     json["rows"] = Json::array();
-    for (const ResultRow& row : results.rows) json["rows"].push_back(row_json(row));
+    for (const ResultRow& row : results.rows) json["rows"].push_back(page_row(row));
     Pictures pictures(folder, data);
     json["pictures"] = pictures.sets(results.pictures);
     json["paths"] = pictures.paths(results.path_pictures);

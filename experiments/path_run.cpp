@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
-#include <limits>
 #include <map>
 #include <optional>
 
 #include <fmt/format.h>
 
 #include "experiments/method_timing.h"
+#include "experiments/mean_measures.h"
+#include "experiments/no_value.h"
 #include "experiments/path_pictures.h"
 #include "experiments/row_measurement.h"
 #include "experiments/settling.h"
@@ -20,8 +21,6 @@
 
 namespace plumb {
 namespace {
-
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 ReferencedErrorSettings error_settings(const Experiment& experiment) {
     ReferencedErrorSettings settings;
@@ -35,40 +34,9 @@ PathStabilitySettings stability_settings(const Experiment& experiment) {
     return settings;
 }
 
-// Means over frames, NaN left out; the root and what follows from it are of the means.
-class MeanMeasures {
-public:
-    void add(const std::vector<std::pair<std::string, double>>& measures) {
-        if (names_.empty())
-            names_.resize(measures.size()), sums_.resize(measures.size()), counts_.resize(measures.size());
-        for (std::size_t i = 0; i < measures.size(); ++i) {
-            names_[i] = measures[i].first;
-            if (std::isnan(measures[i].second)) continue;
-            sums_[i] += measures[i].second;
-            ++counts_[i];
-        }
-    }
-
-    std::vector<std::pair<std::string, double>> means() const {
-        std::vector<std::pair<std::string, double>> result;
-        double mse = none;
-        for (std::size_t i = 0; i < names_.size(); ++i) {
-            const double mean = counts_[i] > 0 ? sums_[i] / counts_[i] : none;
-            if (names_[i] == "mse") mse = mean;
-            result.emplace_back(names_[i], names_[i] == "rmse" ? std::sqrt(mse) : mean);
-        }
-        return result;
-    }
-
-private:
-    std::vector<std::string> names_;
-    std::vector<double> sums_;
-    std::vector<int> counts_;
-};
-
 double mean_named(const std::vector<std::pair<std::string, double>>& measures, std::string_view name) {
     const auto found = std::ranges::find(measures, name, &std::pair<std::string, double>::first);
-    return found == measures.end() ? none : found->second;
+    return found == measures.end() ? no_value : found->second;
 }
 
 }  // namespace
@@ -225,7 +193,7 @@ void PathRun::add(const PlaneImage& image, int frame, const Frame& truth, const 
     reference.set(image.plane, truth.plane(image.plane));
     series.measures.add(compare_frames(test, reference, settings).planes.front().measures());
 
-    FrameMeasure measure{path_.start + frame / path_.frames_per_second, none, none};
+    FrameMeasure measure{path_.start + frame / path_.frames_per_second, no_value, no_value};
     if (truth.has("half_a." + image.plane)) {
         if (const auto error = series.error.add(test, truth, image.plane, reference_samples_))
             measure.rmse = std::sqrt(std::max(0.0, error->mse));
@@ -284,7 +252,7 @@ void PathRun::write_rows(RunResults& results) {
         row.measures = series->measures.means();
         row.mse = mean_named(row.measures, "mse"), row.psnr = mean_named(row.measures, "psnr");
         row.ssim = mean_named(row.measures, "ssim"), row.data_range = mean_named(row.measures, "data_range");
-        row.mse_lower = row.mse_upper = none;
+        row.mse_lower = row.mse_upper = no_value;
         row.measured = true;
         if (series->error.members() > 0) add_error(series->error.error(), row);
         for (const auto& [region, of_region] : series->regions) {

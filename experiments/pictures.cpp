@@ -15,9 +15,9 @@
 namespace plumb {
 namespace {
 
-struct Subject {
+struct PictureSubject {
     std::string plane, truth;
-    bool operator==(const Subject&) const = default;
+    bool operator==(const PictureSubject&) const = default;
 };
 
 class PictureWriter {
@@ -26,7 +26,7 @@ public:
                   const std::filesystem::path& folder, RunResults& results)
         : run_(run), experiment_(experiment), scene_(scene), folder_(folder), results_(results) {}
 
-    void write(const Subject& subject) {
+    void write(const PictureSubject& subject) {
         const double scale = error_scale(subject);
         for (const std::string& view : run_.views()) {
             const Truth* truth = find_truth(view, subject);
@@ -35,7 +35,7 @@ public:
     }
 
 private:
-    const Truth* find_truth(const std::string& view, const Subject& subject) {
+    const Truth* find_truth(const std::string& view, const PictureSubject& subject) {
         const auto found = run_.truths().find(view);
         if (found == run_.truths().end()) return nullptr;
         truths_ = found->second.of(subject.plane);
@@ -44,7 +44,7 @@ private:
     }
 
     template <class Function>
-    void for_each_method(const Subject& subject, const std::string& view, Function&& function) const {
+    void for_each_method(const PictureSubject& subject, const std::string& view, Function&& function) const {
         for (const PlaneImage& image : run_.images()) {
             const bool wanted = image.plane == subject.plane && image.view == view;
             if (wanted && find_method(experiment_.methods, image.method)) function(image);
@@ -52,7 +52,7 @@ private:
     }
 
     // The 99th percentile of the worst image's error: fireflies and silhouettes do not set the scale.
-    double error_scale(const Subject& subject) {
+    double error_scale(const PictureSubject& subject) {
         double scale = 0.0;
         for (const std::string& view : run_.views()) {
             const Truth* truth = find_truth(view, subject);
@@ -66,7 +66,7 @@ private:
         return round_up_scale(scale);
     }
 
-    void write_view(const Subject& subject, const std::string& view, const Truth& truth, double scale) {
+    void write_view(const PictureSubject& subject, const std::string& view, const Truth& truth, double scale) {
         const Image& reference = truth.frame->plane(subject.plane);
         PictureSettings look;
         // Just below white, and of the full truth, so that both truths and the methods look alike.
@@ -107,7 +107,7 @@ private:
 
     static std::string note_of(const Truth& truth) { return fmt::format("{} samples per pixel", truth.samples); }
 
-    std::string note_of(const Subject& subject, const PlaneImage& image) const {
+    std::string note_of(const PictureSubject& subject, const PlaneImage& image) const {
         for (const ResultRow& row : results_.rows) {
             const bool same = row.scene == scene_ && row.view == image.view && row.plane == image.plane &&
                               row.method == image.method && row.truth == subject.truth;
@@ -129,11 +129,11 @@ private:
 void write_pictures(const SceneRun& run, const Experiment& experiment, const std::string& scene,
                     const std::filesystem::path& folder, RunResults& results) {
     PictureWriter writer(run, experiment, scene, folder, results);
-    std::vector<Subject> written;
+    std::vector<PictureSubject> written;
     for (const std::string& plane : experiment.planes) {
         for (const auto& [view, truths] : run.truths()) {
             for (const Truth& truth : truths.of(plane)) {
-                const Subject subject{plane, truth.name};
+                const PictureSubject subject{plane, truth.name};
                 if (std::ranges::find(written, subject) != written.end()) continue;
                 written.push_back(subject);
                 writer.write(subject);

@@ -2,14 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 
 #include <fmt/format.h>
 
 namespace plumb {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 std::string selector_text(const ConfigValue& value) {
     if (const auto* text = std::get_if<std::string>(&value.value)) return *text;
@@ -78,8 +75,8 @@ Claim read_claim(ConfigReader& reader) {
     claim.test = reader.required_text("test");
     claim.quantity = read_quantity(reader);
     claim.unit = reader.text("unit", "");
-    if (reader.has("above")) claim.above = reader.number("above", 0.0, -infinity, infinity);
-    if (reader.has("below")) claim.below = reader.number("below", 0.0, -infinity, infinity);
+    if (reader.has("above")) claim.above = reader.number("above", 0.0, -no_limit, no_limit);
+    if (reader.has("below")) claim.below = reader.number("below", 0.0, -no_limit, no_limit);
     if (!claim.above && !claim.below) reader.fail("", "must say where it holds: 'above', 'below', or both");
     if (claim.above && claim.below && *claim.above >= *claim.below)
         reader.fail("above", fmt::format("is {}, which leaves nothing below {}", *claim.above, *claim.below));
@@ -98,7 +95,7 @@ Originals read_originals(ConfigReader& reader) {
         OriginalRow entry;
         entry.name = row.required_text("name");
         if (!row.has("original")) row.fail("original", "is missing: the number that the source prints");
-        entry.original = row.number("original", 0.0, 0.0, infinity);
+        entry.original = row.number("original", 0.0, 0.0, no_limit);
         entry.of = optional_selector(row, "of");
         row.finish();
         originals.rows.push_back(std::move(entry));

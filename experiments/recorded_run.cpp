@@ -13,7 +13,7 @@
 namespace plumb {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 std::string key_of(const std::string& scene, const std::string& place, const std::string& plane,
                    const std::string& truth, const std::string& method) {
@@ -21,7 +21,7 @@ std::string key_of(const std::string& scene, const std::string& place, const std
                        method);
 }
 
-double number(const Json& json) {
+double recorded_number(const Json& json) {
     return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
 }
 
@@ -44,7 +44,7 @@ void read_rows(const Json& json, RecordedRun& run) {
         const std::string place = row.value("path", row.at("view").get<std::string>());
         auto& measures =
             run.measures[key_of(row.at("scene"), place, row.at("plane"), row.at("truth"), row.at("method"))];
-        for (const auto& [name, value] : row.at("measures").items()) measures.emplace_back(name, number(value));
+        for (const auto& [name, value] : row.at("measures").items()) measures.emplace_back(name, recorded_number(value));
     }
 }
 

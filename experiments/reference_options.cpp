@@ -23,18 +23,18 @@ std::optional<Number> parse_number(std::string_view text) {
 }
 
 template <class Number>
-struct Range {
+struct SampleRange {
     Number from{}, to{};
 };
 
 // "FROM..TO"
 template <class Number>
-std::optional<Range<Number>> parse_range(std::string_view text) {
+std::optional<SampleRange<Number>> parse_range(std::string_view text) {
     const auto dots = text.find("..");
     if (dots == std::string_view::npos) return std::nullopt;
     const auto from = parse_number<Number>(text.substr(0, dots)), to = parse_number<Number>(text.substr(dots + 2));
     if (!from || !to) return std::nullopt;
-    return Range<Number>{*from, *to};
+    return SampleRange<Number>{*from, *to};
 }
 
 void read_samples(const std::string& text, ReferenceOptions& options) {
@@ -42,7 +42,7 @@ void read_samples(const std::string& text, ReferenceOptions& options) {
     const auto fail = [&text](const std::string& message) {
         throw CLI::ValidationError("--samples", fmt::format("{}: {}", text, message));
     };
-    Range<int> range;
+    SampleRange<int> range;
     options.is_shard = text.find("..") != std::string::npos;
     if (options.is_shard) {
         const auto parsed = parse_range<int>(text);

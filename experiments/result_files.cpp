@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "experiments/no_value.h"
 #include "experiments/page.h"
 #include "experiments/run_json.h"
 #include "frames/atomic_file.h"
@@ -17,8 +17,6 @@ namespace plumb {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 // Typed, so that a reader need not parse texts; an infinite radius is the text "inf", as in TOML.
 Json parameters_of(const Method& method) {
@@ -163,7 +161,7 @@ std::string print_csv(const RunResults& results) {
             const auto region = std::ranges::find(row.regions, name, &RegionError::region);
             text.append(",").append(region == row.regions.end() ? "" : csv_number(region->mse));
         }
-        const Stability stability = row.stability.value_or(Stability{none, none, none, none, none, none});
+        const Stability stability = row.stability.value_or(Stability{no_value, no_value, no_value, no_value, no_value, no_value});
         for (const double value : {stability.flicker, stability.flicker_lower, stability.flicker_upper,
                                    stability.method_warping, stability.truth_warping, stability.temporal_variance})
             text.append(",").append(csv_number(value));

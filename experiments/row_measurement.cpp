@@ -1,16 +1,14 @@
 #include "experiments/row_measurement.h"
 
 #include <cmath>
-#include <limits>
 
 #include <fmt/format.h>
 
+#include "experiments/no_value.h"
 #include "metrics/comparison.h"
 
 namespace plumb {
 namespace {
-
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 // Of the truth's frame, what belongs to one plane.
 Frame reference_of(const Truth& truth) {
@@ -65,10 +63,10 @@ ResultRow measure_row(const PlaneImage& image, const Truth& truth, const std::ve
     const PlaneComparison comparison = compare_frames(test, reference, settings).planes.front();
     row.measures = comparison.measures();
     row.psnr = comparison.errors.psnr;
-    row.ssim = comparison.ssim ? comparison.ssim->mean : none;
+    row.ssim = comparison.ssim ? comparison.ssim->mean : no_value;
     row.data_range = comparison.errors.peak;
     row.mse = comparison.best_mse();
-    row.mse_lower = row.mse_upper = none;
+    row.mse_lower = row.mse_upper = no_value;
     row.measured = true;
     if (comparison.referenced) add_error(*comparison.referenced, row);
     if (reference.has("half_a." + image.plane)) {

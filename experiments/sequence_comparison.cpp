@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/no_value.h"
 #include "metrics/gbuffer_fidelity.h"
 #include "metrics/shape.h"
 
 namespace plumb {
 namespace {
-
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 bool knows_motion(const Frame& reference) {
     return reference.has("motion") && reference.has("position") && reference.has("depth");
@@ -37,7 +36,7 @@ double mean(const std::vector<double>& values) {
     for (const double value : values) {
         if (!std::isnan(value)) sum += value, count += 1.0;
     }
-    return count > 0.0 ? sum / count : none;
+    return count > 0.0 ? sum / count : no_value;
 }
 
 double mean_square(std::vector<double> values) {
@@ -49,7 +48,7 @@ double mean_square(std::vector<double> values) {
 double over_frames(const std::string& measure, const std::vector<double>& values) {
     if (measure == "rmse") return std::sqrt(mean_square(values));
     if (measure.ends_with("maximum")) return std::ranges::max(values);
-    if (measure.ends_with("_lower") || measure.ends_with("_upper")) return none;  // no mean of intervals is one
+    if (measure.ends_with("_lower") || measure.ends_with("_upper")) return no_value;  // no mean of intervals is one
     const double average = mean(values);
     return measure == "values" || measure == "left_out" ? average * static_cast<double>(values.size()) : average;
 }

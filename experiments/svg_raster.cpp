@@ -21,7 +21,7 @@ struct Deleter {
 template <class Type>
 using Owned = std::unique_ptr<Type, Deleter>;
 
-[[noreturn]] void fail(GError* error) {
+[[noreturn]] void fail_drawing(GError* error) {
     const Owned<GError> owned(error);
     throw ImageError(fmt::format("cannot draw the SVG: {}", error ? error->message : "no reason was given"));
 }
@@ -42,7 +42,7 @@ std::string rasterise_svg(std::string_view svg, double scale) {
     GError* error = nullptr;
     const Owned<RsvgHandle> handle(
         rsvg_handle_new_from_data(reinterpret_cast<const guint8*>(svg.data()), svg.size(), &error));
-    if (!handle) fail(error);
+    if (!handle) fail_drawing(error);
     double width = 0.0, height = 0.0;
     if (!rsvg_handle_get_intrinsic_size_in_pixels(handle.get(), &width, &height))
         throw ImageError("cannot draw the SVG: it has no width and height in pixels");
@@ -53,7 +53,7 @@ std::string rasterise_svg(std::string_view svg, double scale) {
     require(cairo_surface_status(surface.get()));
     const Owned<cairo_t> context(cairo_create(surface.get()));
     const RsvgRectangle viewport{0.0, 0.0, scale * width, scale * height};
-    if (!rsvg_handle_render_document(handle.get(), context.get(), &viewport, &error)) fail(error);
+    if (!rsvg_handle_render_document(handle.get(), context.get(), &viewport, &error)) fail_drawing(error);
     require(cairo_status(context.get()));
     std::string png;
     require(cairo_surface_write_to_png_stream(surface.get(), append, &png));

@@ -49,11 +49,11 @@ std::string value_text(const FreeParameter& parameter, double value) {
 }
 
 // A range that narrows, in the space in which its values are evenly spaced.
-struct Range {
+struct SearchRange {
     double low, high;
     bool geometric;
 
-    explicit Range(const FreeParameter& parameter)
+    explicit SearchRange(const FreeParameter& parameter)
         : low(parameter.low), high(parameter.high), geometric(is_geometric(parameter)) {
         if (geometric) low = std::log(low), high = std::log(high);
     }
@@ -62,7 +62,7 @@ struct Range {
         return geometric ? std::exp(place) : place;
     }
     // Around the value, within the range of the start.
-    void contract(double around, const Range& whole) {
+    void contract(double around, const SearchRange& whole) {
         const double place = geometric ? std::log(around) : around, width = contraction * (high - low);
         low = std::clamp(place - 0.5 * width, whole.low, whole.high - width);
         high = low + width;
@@ -77,7 +77,7 @@ public:
 
     TuningResult run(const Method& start) {
         result_.start = result_.best = trial(start);
-        std::vector<Range> ranges;
+        std::vector<SearchRange> ranges;
         for (const FreeParameter& parameter : parameters_) ranges.emplace_back(parameter);
         for (int pass = 0; pass < settings_.passes; ++pass) {
             for (std::size_t i = 0; i < parameters_.size(); ++i) {
@@ -90,7 +90,7 @@ public:
                     try_value(parameter, value_text(parameter, ranges[i].value(step, settings_.steps)));
                 ranges[i].contract(
                     std::clamp(value_of(result_.best.method, parameter.name), parameter.low, parameter.high),
-                    Range(parameter));
+                    SearchRange(parameter));
             }
         }
         return std::move(result_);

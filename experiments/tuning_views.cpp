@@ -16,16 +16,6 @@
 namespace plumb {
 namespace {
 
-struct SceneViews {
-    const ExperimentScene* entry = nullptr;
-    Scene scene;
-    struct TruthOfView {
-        TuningView name;
-        ViewTruths truths;
-    };
-    std::vector<TruthOfView> views;
-};
-
 double error_of(const Image& image, const Truth& truth, const std::string& plane) {
     Frame test(image.width(), image.height());
     test.set(plane, image);
@@ -40,6 +30,16 @@ double error_of(const Image& image, const Truth& truth, const std::string& plane
 }  // namespace
 
 struct TuningViews::Implementation {
+    struct SceneViews {
+        const ExperimentScene* entry = nullptr;
+        Scene scene;
+        struct TruthOfView {
+            TuningView name;
+            ViewTruths truths;
+        };
+        std::vector<TruthOfView> views;
+    };
+
     const Experiment& experiment;
     std::string plane;
     bool limited;
@@ -62,8 +62,8 @@ TuningViews::TuningViews(const Experiment& experiment, const std::string& plane,
     RunResults record;
     int trained = 0, judged = 0;
     for (std::size_t s = 0; s < experiment.scenes.size(); ++s) {
-        auto views = std::make_unique<SceneViews>(
-            SceneViews{&experiment.scenes[s], finder.load(experiment.scenes[s].scene), {}});
+        auto views = std::make_unique<Implementation::SceneViews>(
+            Implementation::SceneViews{&experiment.scenes[s], finder.load(experiment.scenes[s].scene), {}});
         const std::vector<std::string> names = views_of(*views->entry, views->scene);
         const PathTracer tracer(views->scene);
         const ReferenceSettings full = full_truth_settings(experiment, *views->entry);
@@ -102,14 +102,14 @@ TuningViews::~TuningViews() = default;
 std::vector<ViewCost> TuningViews::costs(const Method& method, bool held_out) const {
     const Experiment& experiment = implementation_->experiment;
     std::vector<ViewCost> costs;
-    for (const std::unique_ptr<SceneViews>& scene : implementation_->scenes) {
+    for (const std::unique_ptr<Implementation::SceneViews>& scene : implementation_->scenes) {
         if (std::ranges::none_of(scene->views, [&](const auto& view) { return view.name.held_out == held_out; }))
             continue;
         const Quantities quantities = quantities_of(experiment, *scene->entry, implementation_->plane);
         const Method in_scene = method_in_scene(method, *scene->entry, experiment.file.string());
         Pipeline pipeline(*implementation_->context, scene->scene, in_scene, quantities, experiment.width,
                           experiment.height);
-        for (const SceneViews::TruthOfView& view : scene->views) {
+        for (const Implementation::SceneViews::TruthOfView& view : scene->views) {
             if (view.name.held_out != held_out) continue;
             const View camera(scene->scene.camera(view.name.view), experiment.width, experiment.height);
             const Frame* truth = &view.truths.full.frame;

@@ -1,16 +1,14 @@
 #include "experiments/verdicts.h"
 
+#include "experiments/no_value.h"
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 namespace plumb {
 namespace {
-
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 std::string value_name(const Threshold& threshold) {
     const std::string of = threshold.region.empty() ? "" : fmt::format(" over {}", threshold.region);
@@ -35,13 +33,13 @@ std::string_view to_string(VerdictStatus status) {
 }
 
 double Verdict::margin() const {
-    if (!value.value || !threshold.limit) return none;
+    if (!value.value || !threshold.limit) return no_value;
     const double inside = threshold.fails_above ? *threshold.limit - *value.value : *value.value - *threshold.limit;
     return inside / std::abs(*threshold.limit);
 }
 
 double Verdict::change() const {
-    if (!value.value || !threshold.calibrated || threshold.calibrated->mean == 0.0) return none;
+    if (!value.value || !threshold.calibrated || threshold.calibrated->mean == 0.0) return no_value;
     return (*value.value - threshold.calibrated->mean) / std::abs(threshold.calibrated->mean);
 }
 
