@@ -52,5 +52,6 @@ add_custom_command(
     COMMAND ${PLUMBLINE_PYTHON} -m glad --reproducible --quiet --out-path ${GLAD_DIR} --api gl:core=4.5
             --extensions GL_ARB_shader_viewport_layer_array,GL_KHR_debug,GL_ARB_gpu_shader_int64 c --mx
     COMMENT "Generating the OpenGL loader" VERBATIM)
+add_custom_target(plumbline_glad_header DEPENDS ${GLAD_DIR}/include/glad/gl.h)
 add_library(plumbline_glad STATIC ${GLAD_DIR}/src/gl.c)
 target_include_directories(plumbline_glad SYSTEM PUBLIC ${GLAD_DIR}/include)

@@ -94,7 +94,7 @@ ShaderDefines shader_defines(const PassResources& resources) {
     return defines;
 }
 
-GlFramebuffer make_target(const PassResources& resources) {
+GlFramebuffer make_obscurance_target(const PassResources& resources) {
     const GlAttachment attachment{&resources.planes.create(output_plane(resources.method), GL_R32F, 1), 0, 0};
     return GlFramebuffer(resources.context, {&attachment, 1}, {}, "ambient obscurance");
 }
@@ -127,7 +127,7 @@ AmbientObscurancePass::AmbientObscurancePass(const PassResources& resources)
       position_(stored_positions(resources)),
       spiral_(resources.context, resources.method.ao.samples),
       draw_(resources.context, resources.programs, "ambient_obscurance.frag", shader_defines(resources)),
-      target_(make_target(resources)),
+      target_(make_obscurance_target(resources)),
       area_(resources, glm::ivec2(blur_reach(resources.method.ao.blur)), guard_band_reader) {}
 
 void AmbientObscurancePass::execute(const PassFrame&) {

@@ -27,7 +27,7 @@ constexpr std::array<Term, 9> terms = {{{"direct", "DIRECT"},
                                         {"normal", "NORMAL"},
                                         {"albedo", "ALBEDO"}}};
 constexpr std::size_t lights = 4;  // the first of them are radiance that is added
-constexpr GLuint ambient_unit = terms.size();
+constexpr GLuint composite_ambient_unit = terms.size();
 
 // What ambient light is reflected by is what direct and indirect light are reflected by.
 std::string plane_of(const Term& term, const Scene& scene, const Method& method) {
@@ -59,7 +59,7 @@ AmbientSource ambient_source(const Method& method) {
     return is_demo(method) ? method.composite.fill : AmbientSource::none;
 }
 
-void require_sound(const Method& method) {
+void require_sound_composite(const Method& method) {
     if (!is_demo(method)) return;
     const auto require = [&](bool condition, const std::string& problem) {
         if (!condition)
@@ -78,7 +78,7 @@ void require_sound(const Method& method) {
 }  // namespace
 
 CompositePass::CompositePass(const PassResources& resources)
-    : ambient_(resources, ambient_source(resources.method), resources.method.composite.ambient, ambient_unit),
+    : ambient_(resources, ambient_source(resources.method), resources.method.composite.ambient, composite_ambient_unit),
       draw_(resources.context, resources.programs, "composite.frag",
             defines(resources.scene, resources.method, ambient_)) {
     for (const Term& term : terms) {
@@ -99,7 +99,7 @@ void CompositePass::execute(const PassFrame&) {
 }
 
 PassDeclaration declare_composite(const Scene& scene, const Method& method) {
-    require_sound(method);
+    require_sound_composite(method);
     PassDeclaration pass;
     pass.name = "composite";
     for (std::size_t unit = 0; unit < terms.size(); ++unit) {

@@ -14,17 +14,19 @@ namespace plumb {
 namespace {
 
 // Texture units of direct_light.frag.
-enum Unit : GLuint {
-    depth_unit,
-    normal_unit,
-    albedo_unit,
-    points_unit,
-    maps_unit,
-    emitters_unit,
-    ambient_unit,
-    paraboloids_unit,
-    local_irradiance_unit,
-    environment_unit
+struct DirectLightUnits {
+    enum : GLuint {
+        depth,
+        normal,
+        albedo,
+        points,
+        maps,
+        emitters,
+        ambient,
+        paraboloids,
+        local_irradiance,
+        environment
+    };
 };
 
 bool uses_ambient_visibility(const Scene& scene, const Method& method) {
@@ -33,10 +35,6 @@ bool uses_ambient_visibility(const Scene& scene, const Method& method) {
 
 bool uses_irradiance_cube(const Scene& scene, const Method& method) {
     return !scene.environment.is_black() && method.direct.environment == EnvironmentIrradiance::cube;
-}
-
-const GlTexture* find(const PlaneTextures& planes, const std::string& name) {
-    return planes.has(name) ? &planes.get(name) : nullptr;
 }
 
 }  // namespace
@@ -62,10 +60,10 @@ DirectLightPass::DirectLightPass(const PassResources& resources, int layer)
         planes.create("direct", texture_format(resources.method.gbuffer.radiance_format),
                       resources.layers_of("direct"));
     target_ = GlFramebuffer(context_, std::array{GlAttachment{&planes.get("direct"), layer}}, {}, "direct");
-    shadow_points_ = find(planes, "shadow.points");
-    shadow_paraboloids_ = find(planes, "shadow.paraboloids");
-    shadow_maps_ = find(planes, "shadow.maps");
-    shadow_emitters_ = find(planes, "shadow.emitters");
+    shadow_points_ = planes.find("shadow.points");
+    shadow_paraboloids_ = planes.find("shadow.paraboloids");
+    shadow_maps_ = planes.find("shadow.maps");
+    shadow_emitters_ = planes.find("shadow.emitters");
     if (uses_ambient_visibility(resources.scene, resources.method)) ambient_visibility_ = &planes.get("ao");
     if (uses_light_volumes(resources.scene, resources.method)) {
         local_irradiance_ = &planes.get("local_irradiance");
@@ -106,16 +104,16 @@ void DirectLightPass::set_environment(const PassResources& resources) const {
 }
 
 void DirectLightPass::execute(const PassFrame&) {
-    depth_.bind(depth_unit);
-    normal_.bind(normal_unit);
-    albedo_.bind(albedo_unit);
-    if (shadow_points_) shadow_points_->bind(points_unit);
-    if (shadow_paraboloids_) shadow_paraboloids_->bind(paraboloids_unit);
-    if (shadow_maps_) shadow_maps_->bind(maps_unit);
-    if (shadow_emitters_) shadow_emitters_->bind(emitters_unit);
-    if (local_irradiance_) local_irradiance_->bind(local_irradiance_unit);
-    if (environment_irradiance_) environment_irradiance_->bind(environment_unit);
-    if (ambient_visibility_) ambient_visibility_->bind(ambient_unit);
+    depth_.bind(DirectLightUnits::depth);
+    normal_.bind(DirectLightUnits::normal);
+    albedo_.bind(DirectLightUnits::albedo);
+    if (shadow_points_) shadow_points_->bind(DirectLightUnits::points);
+    if (shadow_paraboloids_) shadow_paraboloids_->bind(DirectLightUnits::paraboloids);
+    if (shadow_maps_) shadow_maps_->bind(DirectLightUnits::maps);
+    if (shadow_emitters_) shadow_emitters_->bind(DirectLightUnits::emitters);
+    if (local_irradiance_) local_irradiance_->bind(DirectLightUnits::local_irradiance);
+    if (environment_irradiance_) environment_irradiance_->bind(DirectLightUnits::environment);
+    if (ambient_visibility_) ambient_visibility_->bind(DirectLightUnits::ambient);
     const std::array<const GlBuffer*, 6> buffers{&points_,   &spots_,  &directionals_,
                                                  &emitters_, &pieces_, &emitter_cubes_};
     for (std::size_t i = 0; i < buffers.size(); ++i) buffers[i]->bind(GL_SHADER_STORAGE_BUFFER, static_cast<GLuint>(i));

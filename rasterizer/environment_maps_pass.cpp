@@ -7,7 +7,7 @@
 namespace plumb {
 namespace {
 
-constexpr GLuint environment_unit = 0;
+constexpr GLuint source_environment_unit = 0;
 
 // Directions per texel and axis, so that no texel of the equirectangular image is skipped.
 int supersamples(const Scene& scene, int size) {
@@ -16,7 +16,7 @@ int supersamples(const Scene& scene, int size) {
 }
 
 ShaderDefines defines(const Scene& scene, const EnvironmentLight& environment, int size) {
-    ShaderDefines result = environment.radiance_defines(environment_unit);
+    ShaderDefines result = environment.radiance_defines(source_environment_unit);
     result.emplace_back("SUPERSAMPLES", fmt::format("{}", supersamples(scene, size)));
     return result;
 }
@@ -40,7 +40,7 @@ void EnvironmentMapsPass::execute(const PassFrame&) {
 
 void EnvironmentMapsPass::make() {
     if (draw_) {
-        environment_.set_radiance(draw_->program(), environment_unit);
+        environment_.set_radiance(draw_->program(), source_environment_unit);
         draw_->program().set("size", size_);
     }
     for (int face = 0; face < 6; ++face) {

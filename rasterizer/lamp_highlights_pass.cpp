@@ -10,19 +10,9 @@ namespace plumb {
 namespace {
 
 // Texture units of lamp_highlights.frag.
-enum Unit : GLuint {
-    depth_unit,
-    normal_unit,
-    specular_unit,
-    points_unit,
-    maps_unit,
-    paraboloids_unit = 7,
-    roughness_unit
+struct LampHighlightUnits {
+    enum : GLuint { depth, normal, specular, points, maps, paraboloids = 7, roughness };
 };
-
-const GlTexture* find(const PlaneTextures& planes, const std::string& name) {
-    return planes.has(name) ? &planes.get(name) : nullptr;
-}
 
 }  // namespace
 
@@ -37,9 +27,9 @@ LampHighlightsPass::LampHighlightsPass(const PassResources& resources)
       normal_(resources.planes.get("normal")),
       specular_(resources.planes.get("specular")),
       roughness_(resources.planes.get("roughness")),
-      shadow_points_(find(resources.planes, "shadow.points")),
-      shadow_paraboloids_(find(resources.planes, "shadow.paraboloids")),
-      shadow_maps_(find(resources.planes, "shadow.maps")),
+      shadow_points_(resources.planes.find("shadow.points")),
+      shadow_paraboloids_(resources.planes.find("shadow.paraboloids")),
+      shadow_maps_(resources.planes.find("shadow.maps")),
       area_(resources, {0, 0}) {
     const GlTexture& highlights = resources.planes.create(lamp_highlights_plane, GL_RGBA32F, 1);
     target_ = GlFramebuffer(context_, std::array{GlAttachment{&highlights}}, {}, "lamp highlights");
@@ -59,13 +49,13 @@ ShaderDefines LampHighlightsPass::defines(const PassResources& resources) const 
 }
 
 void LampHighlightsPass::execute(const PassFrame&) {
-    depth_.bind(depth_unit);
-    normal_.bind(normal_unit);
-    specular_.bind(specular_unit);
-    roughness_.bind(roughness_unit);
-    if (shadow_points_) shadow_points_->bind(points_unit);
-    if (shadow_paraboloids_) shadow_paraboloids_->bind(paraboloids_unit);
-    if (shadow_maps_) shadow_maps_->bind(maps_unit);
+    depth_.bind(LampHighlightUnits::depth);
+    normal_.bind(LampHighlightUnits::normal);
+    specular_.bind(LampHighlightUnits::specular);
+    roughness_.bind(LampHighlightUnits::roughness);
+    if (shadow_points_) shadow_points_->bind(LampHighlightUnits::points);
+    if (shadow_paraboloids_) shadow_paraboloids_->bind(LampHighlightUnits::paraboloids);
+    if (shadow_maps_) shadow_maps_->bind(LampHighlightUnits::maps);
     const std::array<const GlBuffer*, 3> buffers{&points_, &spots_, &directionals_};
     for (std::size_t i = 0; i < buffers.size(); ++i) buffers[i]->bind(GL_SHADER_STORAGE_BUFFER, static_cast<GLuint>(i));
     const InnerArea::Restriction restriction(area_);

@@ -12,7 +12,7 @@ namespace plumb {
 namespace {
 
 // Texture units of lit_surface.glsl and shadow_lookup.glsl.
-constexpr GLuint depth_unit = 0, normal_unit = 1;
+constexpr GLuint volume_depth_unit = 0, volume_normal_unit = 1;
 constexpr std::array<std::pair<const char*, GLuint>, 3> shadow_units{
     {{"shadow.points", 3}, {"shadow.maps", 4}, {"shadow.paraboloids", 7}}};
 // A hardware depth buffer; not a plane that a pass could read. Both layers use it in turn.
@@ -134,8 +134,8 @@ void LightVolumePass::execute(const PassFrame& frame) {
         fragment_counter_.write(0, sizeof(zero), &zero);
         fragment_counter_.bind(GL_ATOMIC_COUNTER_BUFFER, 0);
     }
-    depth_.bind(depth_unit);
-    normal_.bind(normal_unit);
+    depth_.bind(volume_depth_unit);
+    normal_.bind(volume_normal_unit);
     for (std::size_t i = 0; i < shadows_.size(); ++i) {
         if (shadows_[i] != nullptr) shadows_[i]->bind(shadow_units[i].second);
     }

@@ -7,13 +7,13 @@
 namespace plumb {
 namespace {
 
-constexpr GLuint displacement_unit = 1;
+constexpr GLuint motion_displacement_unit = 1;
 
 }  // namespace
 
 MotionPass::MotionPass(const PassResources& resources, int layer)
     : depth_(resources.planes.get("depth")),
-      reprojection_(resources, displacement_unit),
+      reprojection_(resources, motion_displacement_unit),
       layer_(layer),
       draw_(resources.context, resources.programs, "motion.frag", reprojection_.defines()) {
     // Whichever layer's pass is made first allocates for both.

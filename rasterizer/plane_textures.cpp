@@ -37,6 +37,11 @@ const PlaneHistory* PlaneTextures::history_of(std::string_view name) const {
     return found == histories_.end() ? nullptr : &found->second;
 }
 
+const GlTexture* PlaneTextures::find(std::string_view name) const {
+    const auto found = textures_.find(name);
+    return found == textures_.end() ? nullptr : &found->second;
+}
+
 const GlTexture& PlaneTextures::get(std::string_view name) const {
     const auto found = textures_.find(name);
     if (found != textures_.end()) return found->second;

@@ -41,6 +41,8 @@ public:
     // Null where the plane has none.
     const PlaneHistory* history_of(std::string_view name) const;
     bool has(std::string_view name) const { return textures_.find(name) != textures_.end(); }
+    // Null where there is none.
+    const GlTexture* find(std::string_view name) const;
     // Throws GlError that lists the planes there are.
     const GlTexture& get(std::string_view name) const;
     // By name.

@@ -9,7 +9,9 @@
 namespace plumb {
 namespace {
 
-enum Unit : GLuint { depth_unit, finer_unit = 0, direct_unit = 4, emission_unit, indirect_unit };
+struct RadianceChainUnits {
+    enum : GLuint { depth, finer = 0, direct = 4, emission, indirect };
+};
 
 ShaderDefines defines_of_level(const PassResources& resources, bool first) {
     ShaderDefines defines = SurfaceRadiance(resources.scene, resources.method, resources.quantities).defines();
@@ -49,9 +51,9 @@ SurfaceRadiancePlanes::SurfaceRadiancePlanes(const PlaneTextures& planes, const 
       indirect_(radiance.indirect ? &planes.get("indirect") : nullptr) {}
 
 void SurfaceRadiancePlanes::bind() const {
-    if (direct_) direct_->bind(direct_unit);
-    if (emission_) emission_->bind(emission_unit);
-    if (indirect_) indirect_->bind(indirect_unit);
+    if (direct_) direct_->bind(RadianceChainUnits::direct);
+    if (emission_) emission_->bind(RadianceChainUnits::emission);
+    if (indirect_) indirect_->bind(RadianceChainUnits::indirect);
 }
 
 RadianceMipChainPass::RadianceMipChainPass(const PassResources& resources)
@@ -76,12 +78,12 @@ void RadianceMipChainPass::execute(const PassFrame&) {
     sources_.bind();
     for (int layer = 0; layer < chain_.layers(); ++layer) {
         const std::vector<GlFramebuffer>& levels = targets_[static_cast<std::size_t>(layer)];
-        depth_.bind(depth_unit);
+        depth_.bind(RadianceChainUnits::depth);
         first_level_.program().set("layer", layer);
         first_level_.draw(levels.front());
         // Each level is read while the next one is drawn into: other texels of the same texture, which OpenGL allows
         // where a barrier follows each draw.
-        chain_.bind(finer_unit);
+        chain_.bind(RadianceChainUnits::finer);
         further_levels_.program().set("layer", layer);
         for (std::size_t level = 1; level < levels.size(); ++level) {
             chain_.context().gl.TextureBarrier();

@@ -17,7 +17,7 @@
 namespace plumb {
 namespace {
 
-void require_sound(const Method& method) {
+void require_sound_radiosity(const Method& method) {
     const RadiositySettings& settings = method.radiosity;
     const auto require = [&](bool condition, const std::string& problem) {
         if (!condition) throw MethodError(fmt::format("method '{}': {}", method.name, problem));
@@ -91,7 +91,7 @@ void declare_reflections(std::vector<PassDeclaration>& passes, const Scene& scen
 
 std::vector<PassDeclaration> declare_radiosity(const Scene& scene, const Method& method) {
     const RadiositySettings& settings = method.radiosity;
-    if (settings.enabled) require_sound(method);
+    if (settings.enabled) require_sound_radiosity(method);
     std::vector<PassDeclaration> passes;
     if (settings.carry) passes.push_back(declare_radiosity_carry(scene, method));
     for (int bounce = 1; bounce <= settings.bounces; ++bounce) {

@@ -10,9 +10,11 @@
 namespace plumb {
 namespace {
 
-enum Unit : GLuint { depth_unit, previous_depth_unit, direct_unit, albedo_unit, irradiance_unit, displacement_unit };
+struct CarryUnits {
+    enum : GLuint { depth, previous_depth, direct, albedo, irradiance, displacement };
+};
 
-void require_sound(const RadiositySettings& settings) {
+void require_sound_carry(const RadiositySettings& settings) {
     if (!(settings.damping >= 0.0f && settings.damping <= 1.0f)) {
         throw MethodError(
             fmt::format("radiosity.damping is {}; it is the fraction taken away of what is carried on: "
@@ -27,7 +29,7 @@ void require_sound(const RadiositySettings& settings) {
     }
 }
 
-GlFramebuffer make_target(const PassResources& resources) {
+GlFramebuffer make_carry_target(const PassResources& resources) {
     const std::string name(sent_radiosity_plane);
     const int layers = resources.method.radiosity.layers;
     const GlTexture& sent =
@@ -46,13 +48,13 @@ RadiosityCarryPass::RadiosityCarryPass(const PassResources& resources)
       direct_(resources.planes.get("direct")),
       albedo_(resources.planes.get(diffuse_albedo_plane(resources.scene, resources.method))),
       takes_all_(resources.method.radiosity.damping == 1.0f),
-      reprojection_(resources, displacement_unit),
+      reprojection_(resources, CarryUnits::displacement),
       draw_(resources.context, resources.programs, "radiosity_carry.frag", defines(resources)),
-      target_(make_target(resources)) {}
+      target_(make_carry_target(resources)) {}
 
 ShaderDefines RadiosityCarryPass::defines(const PassResources& resources) const {
     const RadiositySettings& settings = resources.method.radiosity;
-    require_sound(settings);
+    require_sound_carry(settings);
     ShaderDefines result = {{"LAYERS", std::to_string(settings.layers)},
                             {"REUSE", "0"},
                             {"GATHER", "1"},
@@ -69,12 +71,12 @@ ShaderDefines RadiosityCarryPass::defines(const PassResources& resources) const 
 }
 
 void RadiosityCarryPass::execute(const PassFrame& frame) {
-    depth_.bind(depth_unit);
-    previous_depth_.bind(previous_depth_unit);
-    direct_.bind(direct_unit);
-    albedo_.bind(albedo_unit);
+    depth_.bind(CarryUnits::depth);
+    previous_depth_.bind(CarryUnits::previous_depth);
+    direct_.bind(CarryUnits::direct);
+    albedo_.bind(CarryUnits::albedo);
     // Until this frame's passes write it, the plane holds what they gave in the last one.
-    planes_.get(radiosity_plane(1)).bind(irradiance_unit);
+    planes_.get(radiosity_plane(1)).bind(CarryUnits::irradiance);
     reprojection_.bind();
     // A driver may find out that nothing is read where all is taken away.
     if (!takes_all_) draw_.program().set("continues", frame.continues ? 1 : 0);

@@ -25,7 +25,7 @@ std::string depth_plane(const RadiositySettings& settings) {
 
 bool emission_is_sent(const RadiositySettings& settings, int bounce) { return settings.emitters_shine && bounce == 1; }
 
-void require_sound(const RadiositySettings& settings) {
+void require_sound_gather(const RadiositySettings& settings) {
     const bool infinite = std::isinf(settings.radius) && settings.spread_pixels > 0;
     if (!(settings.radius > 0.0f) || !(std::isfinite(settings.radius) || infinite)) {
         throw MethodError(
@@ -59,7 +59,7 @@ void require_sound(const RadiositySettings& settings) {
 
 ShaderDefines shader_defines(const PassResources& resources, int bounce, int layer) {
     const RadiositySettings& settings = resources.method.radiosity;
-    require_sound(settings);
+    require_sound_gather(settings);
     const int coarsest =
         settings.use_mip_chain ? coarsest_depth_mip(resources.planes.width(), resources.planes.height()) : 0;
     ShaderDefines defines = SampleSpiral::defines(settings.samples, taps_vary(settings.temporal));
@@ -89,7 +89,7 @@ ShaderDefines shader_defines(const PassResources& resources, int bounce, int lay
     return defines;
 }
 
-GlFramebuffer make_target(const PassResources& resources, int bounce, int layer) {
+GlFramebuffer make_gather_target(const PassResources& resources, int bounce, int layer) {
     const std::string name = gathered_plane(resources.method.radiosity, bounce);
     PlaneTextures& planes = resources.planes;
     if (!planes.has(name)) planes.create(name, GL_RGBA32F, resources.layers_of(name));
@@ -121,7 +121,7 @@ RadiosityGatherPass::RadiosityGatherPass(const PassResources& resources, int bou
       sent_(resources.planes.get(sent_plane(resources.method.radiosity, bounce))),
       spiral_(resources.context, resources.method.radiosity.samples),
       draw_(resources.context, resources.programs, "radiosity_gather.frag", shader_defines(resources, bounce, layer)),
-      target_(make_target(resources, bounce, layer)),
+      target_(make_gather_target(resources, bounce, layer)),
       area_(resources, glm::ivec2(blur_reach(resources.method.radiosity.blur)),
             plane_of_later_bounces(resources.method.radiosity, bounce)) {
     if (emission_is_sent(resources.method.radiosity, bounce)) emission_ = &resources.planes.get("emission");

@@ -21,7 +21,7 @@ ShaderDefines shader_defines(const RadiositySettings& settings, int layer) {
 }
 
 // Whichever layer's pass is made first allocates for both.
-GlFramebuffer make_target(const PassResources& resources, int bounce, int layer) {
+GlFramebuffer make_bounce_target(const PassResources& resources, int bounce, int layer) {
     const Method& method = resources.method;
     const std::string name = indirect_plane(bounce);
     const bool is_last = plane_of_later_bounces(method.radiosity, bounce).empty();
@@ -44,7 +44,7 @@ ShaderDefines boost_defines(const RadiositySettings& settings) {
 RadiosityReflectionPass::RadiosityReflectionPass(const PassResources& resources, int bounce, int layer)
     : gathered_(resources.planes.get(radiosity_plane(bounce))),
       albedo_(resources.planes.get(diffuse_albedo_plane(resources.scene, resources.method))),
-      target_(make_target(resources, bounce, layer)),
+      target_(make_bounce_target(resources, bounce, layer)),
       draw_(resources.context, resources.programs, "radiosity_reflection.frag",
             shader_defines(resources.method.radiosity, layer)),
       area_(resources, {0, 0}, plane_of_later_bounces(resources.method.radiosity, bounce)) {}

@@ -12,7 +12,9 @@ namespace plumb {
 namespace {
 
 // Texture units of radiosity_sum.frag; the bounces take those before.
-enum Unit : GLuint { albedo_unit = most_bounces, depth_unit, normal_unit, fill_unit };
+struct SumUnits {
+    enum : GLuint { albedo = most_bounces, depth, normal, fill };
+};
 
 struct Output {
     const char* plane;
@@ -40,7 +42,7 @@ bool fills(const Method& method) { return method.radiosity.fill != AmbientSource
 
 RadiositySumPass::RadiositySumPass(const PassResources& resources)
     : albedo_(resources.planes.get(diffuse_albedo_plane(resources.scene, resources.method))),
-      fill_(resources, resources.method.radiosity.fill, resources.method.radiosity.ambient, fill_unit),
+      fill_(resources, resources.method.radiosity.fill, resources.method.radiosity.ambient, SumUnits::fill),
       target_(make_target(resources, locations_)),
       draw_(resources.context, resources.programs, "radiosity_sum.frag", defines(resources)),
       area_(resources, {0, 0}) {
@@ -63,8 +65,8 @@ ShaderDefines RadiositySumPass::defines(const PassResources& resources) const {
 
 void RadiositySumPass::execute(const PassFrame&) {
     for (std::size_t i = 0; i < gathered_.size(); ++i) gathered_[i]->bind(static_cast<GLuint>(i));
-    albedo_.bind(albedo_unit);
-    if (depth_) depth_->bind(depth_unit), normal_->bind(normal_unit);
+    albedo_.bind(SumUnits::albedo);
+    if (depth_) depth_->bind(SumUnits::depth), normal_->bind(SumUnits::normal);
     fill_.bind();
     const InnerArea::Restriction restriction(area_);
     draw_.draw(target_);

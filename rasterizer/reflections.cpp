@@ -16,15 +16,8 @@ namespace plumb {
 namespace {
 
 // Texture units of reflections.frag besides those of surface_radiance.glsl and stored_position_unit.
-enum Unit : GLuint {
-    depth_unit,
-    normal_unit,
-    specular_unit,
-    chain_unit = 7,
-    roughness_unit,
-    lamps_unit,
-    fallback_unit,
-    specular_albedo_unit
+struct ReflectionUnits {
+    enum : GLuint { depth, normal, specular, chain = 7, roughness, lamps, fallback, specular_albedo };
 };
 
 // Rays of one draw: a driver may end a shader that takes too long, and Mesa's software rasterizer ends all loops of a
@@ -118,7 +111,7 @@ ShaderDefines shader_defines(const PassResources& resources, bool lamps, bool fa
     defines.insert(defines.end(), chosen.begin(), chosen.end());
     const auto add = [&](const ShaderDefines& more) { defines.insert(defines.end(), more.begin(), more.end()); };
     add(SurfaceRadiance(resources.scene, resources.method, quantities).defines());
-    add(SpecularAlbedoTexture::defines(specular_albedo_unit));
+    add(SpecularAlbedoTexture::defines(ReflectionUnits::specular_albedo));
     if (is_limited(quantities)) {
         defines.emplace_back("RADIUS", shader_literal(quantities.reflection_radius));
         add(falloff_defines(quantities.reflection_falloff));
@@ -126,11 +119,11 @@ ShaderDefines shader_defines(const PassResources& resources, bool lamps, bool fa
     return defines;
 }
 
-const GlTexture* find(const PassResources& resources, const std::string& plane) {
-    return resources.planes.has(plane) && resources.is_read(plane) ? &resources.planes.get(plane) : nullptr;
+const GlTexture* find_read(const PassResources& resources, const std::string& plane) {
+    return resources.is_read(plane) ? resources.planes.find(plane) : nullptr;
 }
 
-GlFramebuffer make_target(const PassResources& resources) {
+GlFramebuffer make_reflection_target(const PassResources& resources) {
     const GlTexture& reflection = resources.planes.create("reflection", GL_RGBA32F, 1);
     return GlFramebuffer(resources.context, std::array{GlAttachment{&reflection}}, {}, "reflections");
 }
@@ -138,7 +131,7 @@ GlFramebuffer make_target(const PassResources& resources) {
 // A scene that reflects nothing.
 class NoReflectionPass final : public Pass {
 public:
-    explicit NoReflectionPass(const PassResources& resources) : target_(make_target(resources)) {}
+    explicit NoReflectionPass(const PassResources& resources) : target_(make_reflection_target(resources)) {}
     void execute(const PassFrame&) override {
         constexpr std::array<float, 4> black{};
         target_.context().gl.ClearNamedFramebufferfv(target_.id(), GL_COLOR, 0, black.data());
@@ -173,30 +166,30 @@ ReflectionPass::ReflectionPass(const PassResources& resources)
       specular_(resources.planes.get("specular")),
       roughness_(resources.planes.get("roughness")),
       position_(stored_positions(resources)),
-      chain_(find(resources, radiance_chain_plane)),
-      lamps_(find(resources, lamp_highlights_plane)),
+      chain_(find_read(resources, radiance_chain_plane)),
+      lamps_(find_read(resources, lamp_highlights_plane)),
       sources_(resources.planes, SurfaceRadiance(resources.scene, resources.method, resources.quantities)),
       specular_albedo_(specular_albedo_table(resources.context, resources.planes)),
       draw_(resources.context, resources.programs, "reflections.frag",
             shader_defines(resources, lamps_ != nullptr,
                            !fallback_plane(resources.scene, resources.method, resources.quantities).empty())),
-      target_(make_target(resources)),
+      target_(make_reflection_target(resources)),
       area_(resources, {0, 0}) {
     const std::string fallback = fallback_plane(resources.scene, resources.method, resources.quantities);
     if (!fallback.empty()) fallback_ = &resources.planes.get(fallback);
 }
 
 void ReflectionPass::execute(const PassFrame& frame) {
-    depth_.bind(depth_unit);
-    normal_.bind(normal_unit);
-    specular_.bind(specular_unit);
-    roughness_.bind(roughness_unit);
+    depth_.bind(ReflectionUnits::depth);
+    normal_.bind(ReflectionUnits::normal);
+    specular_.bind(ReflectionUnits::specular);
+    roughness_.bind(ReflectionUnits::roughness);
     if (position_) position_->bind(stored_position_unit);
-    if (chain_) chain_->bind(chain_unit);
-    if (lamps_) lamps_->bind(lamps_unit);
-    if (fallback_) fallback_->bind(fallback_unit);
+    if (chain_) chain_->bind(ReflectionUnits::chain);
+    if (lamps_) lamps_->bind(ReflectionUnits::lamps);
+    if (fallback_) fallback_->bind(ReflectionUnits::fallback);
     sources_.bind();
-    specular_albedo_.bind(specular_albedo_unit);
+    specular_albedo_.bind(ReflectionUnits::specular_albedo);
     draw_.program().set("thickness",
                         thickness_ > 0.0f ? thickness_ : separation_in_metres(gbuffer_, frame.view.camera()));
     const InnerArea::Restriction restriction(area_);

@@ -7,7 +7,7 @@
 namespace plumb {
 namespace {
 
-constexpr GLuint displacement_unit = 3;
+constexpr GLuint antialias_displacement_unit = 3;
 constexpr const char* resolved_plane = "total";
 
 // The digits of `index` in `base`, mirrored about the point.
@@ -56,7 +56,7 @@ std::string composited_plane(const Method& method) {
 TemporalAntialiasPass::TemporalAntialiasPass(const PassResources& resources)
     : aliased_(resources.planes.get(aliased_plane)),
       depth_(resources.planes.get("depth")),
-      reprojection_(resources, displacement_unit),
+      reprojection_(resources, antialias_displacement_unit),
       area_(resources, {0, 0}),
       resolved_(create_resolved(resources.planes)),
       history_(*resources.planes.history_of(resolved_plane)),

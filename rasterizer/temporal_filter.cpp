@@ -11,7 +11,7 @@
 namespace plumb {
 namespace {
 
-constexpr GLuint displacement_unit = 5;
+constexpr GLuint history_displacement_unit = 5;
 
 const TemporalFilterSettings& checked(const TemporalFilterRequest& request) {
     const TemporalFilterSettings& settings = request.settings;
@@ -79,7 +79,7 @@ TemporalFilterPass::TemporalFilterPass(const PassResources& resources, const Tem
       normal_(resources.planes.get("normal")),
       previous_depth_(resources.planes.get(gbuffer_history)),
       is_first_(!resources.planes.has(request.output)),
-      reprojection_(resources, displacement_unit),
+      reprojection_(resources, history_displacement_unit),
       area_(resources, {0, 0}, request.read_beyond),
       output_(create_output(resources, request)),
       history_(*resources.planes.history_of(request.output)),

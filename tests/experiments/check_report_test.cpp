@@ -18,7 +18,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 
 // What Python makes of a JUnit file: counts, then one line per case with its outcome, name, message and text.
-constexpr const char* reader = R"(import json, sys, xml.etree.ElementTree as tree
+constexpr const char* report_reader = R"(import json, sys, xml.etree.ElementTree as tree
 suite = tree.parse(sys.argv[1]).getroot().find('testsuite')
 cases = []
 for case in suite.findall('testcase'):
@@ -31,10 +31,10 @@ print(json.dumps({'attributes': suite.attrib, 'cases': cases}))
 
 nlohmann::json read_junit(const std::string& text) {
     const TemporaryFolder folder;
-    std::ofstream(folder.path / "reader.py") << reader;
+    std::ofstream(folder.path / "report_reader.py") << report_reader;
     std::ofstream(folder.path / "junit.xml") << text;
-    const ProgramRun run =
-        run_shell("python3 " + (folder.path / "reader.py").string() + " " + (folder.path / "junit.xml").string());
+    const ProgramRun run = run_shell("python3 " + (folder.path / "report_reader.py").string() + " " +
+                                     (folder.path / "junit.xml").string());
     EXPECT_EQ(run.exit_code, 0) << run.output << text;
     return nlohmann::json::parse(run.output);
 }

@@ -26,7 +26,7 @@ using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-std::string read_message(const std::filesystem::path& path) {
+std::string picture_message(const std::filesystem::path& path) {
     try {
         read_frame(path);
     } catch (const ImageError& error) {
@@ -106,17 +106,17 @@ TEST(ReadFrame, NamesFileAndRemedyForWhatIsNoImage) {
     std::ifstream file(folder / "whole.png", std::ios::binary);
     const std::string whole{std::istreambuf_iterator<char>(file), {}};
     std::ofstream(folder / "part.png", std::ios::binary) << whole.substr(0, whole.size() / 2);
-    EXPECT_THAT(read_message(folder / "none.png"), AllOf(HasSubstr("none.png"), HasSubstr("no such file")));
-    EXPECT_THAT(read_message(folder / "empty.png"), AllOf(HasSubstr("empty.png"), HasSubstr("0 bytes")));
-    EXPECT_THAT(read_message(folder / "text.png"), AllOf(HasSubstr("text.png"), HasSubstr("give an image file")));
+    EXPECT_THAT(picture_message(folder / "none.png"), AllOf(HasSubstr("none.png"), HasSubstr("no such file")));
+    EXPECT_THAT(picture_message(folder / "empty.png"), AllOf(HasSubstr("empty.png"), HasSubstr("0 bytes")));
+    EXPECT_THAT(picture_message(folder / "text.png"), AllOf(HasSubstr("text.png"), HasSubstr("give an image file")));
     {
 #ifdef __SANITIZE_ADDRESS__
         // libpng leaves OpenImageIO's reader by longjmp, past the destructor of a string of its own.
         const __lsan::ScopedDisabler leak_of_the_library;
 #endif
-        EXPECT_THAT(read_message(folder / "part.png"), HasSubstr("part.png"));
+        EXPECT_THAT(picture_message(folder / "part.png"), HasSubstr("part.png"));
     }
-    EXPECT_THAT(read_message(folder.path()), HasSubstr("not a file"));
+    EXPECT_THAT(picture_message(folder.path()), HasSubstr("not a file"));
 }
 
 TEST(Picture, RadianceTakesExposureThenTheSrgbCurveAndClampsOnlyHere) {
