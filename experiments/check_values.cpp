@@ -1,12 +1,13 @@
 #include "experiments/check_values.h"
 
-#include "experiments/no_value.h"
 #include <algorithm>
 #include <cmath>
 #include <set>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+
+#include "experiments/no_value.h"
 
 namespace plumb {
 namespace {

@@ -56,7 +56,8 @@ SequenceSettings settings_of(const CompareCommandOptions& options, const ImagePa
     return settings;
 }
 
-void write_heat_maps(const CompareCommandOptions& options, const ImagePairs& images, const SequenceComparison& comparison) {
+void write_heat_maps(const CompareCommandOptions& options, const ImagePairs& images,
+                     const SequenceComparison& comparison) {
     const auto scales = error_map_scales(comparison.frames(), options.heat_map_scale);
     for (const ImagePair& pair : images.pairs) {
         const Frame test = read_frame(pair.test), reference = read_frame(pair.reference);

@@ -72,8 +72,8 @@ void print_timing(const Timing& timing, const GlInfo& info) {
 }
 
 // The frame at --time after those before it, so that what the method keeps from frame to frame has come about.
-RasterResult render_last_frame(Pipeline& pipeline, const RenderCommandOptions& options, const Scene& scene, const Method& method,
-                               const Frame* truth) {
+RasterResult render_last_frame(Pipeline& pipeline, const RenderCommandOptions& options, const Scene& scene,
+                               const Method& method, const Frame* truth) {
     const int frames = options.frames > 0 ? options.frames : frames_to_settle(method);
     if (frames == 1) return pipeline.render(options.view.make_view(scene), nullptr, truth);
     const auto at = [&](int frame) {

@@ -8,8 +8,8 @@
 
 #include <fmt/format.h>
 
-#include "experiments/method_timing.h"
 #include "experiments/mean_measures.h"
+#include "experiments/method_timing.h"
 #include "experiments/no_value.h"
 #include "experiments/path_pictures.h"
 #include "experiments/row_measurement.h"

@@ -44,7 +44,8 @@ void read_rows(const Json& json, RecordedRun& run) {
         const std::string place = row.value("path", row.at("view").get<std::string>());
         auto& measures =
             run.measures[key_of(row.at("scene"), place, row.at("plane"), row.at("truth"), row.at("method"))];
-        for (const auto& [name, value] : row.at("measures").items()) measures.emplace_back(name, recorded_number(value));
+        for (const auto& [name, value] : row.at("measures").items())
+            measures.emplace_back(name, recorded_number(value));
     }
 }
 

@@ -161,7 +161,8 @@ std::string print_csv(const RunResults& results) {
             const auto region = std::ranges::find(row.regions, name, &RegionError::region);
             text.append(",").append(region == row.regions.end() ? "" : csv_number(region->mse));
         }
-        const Stability stability = row.stability.value_or(Stability{no_value, no_value, no_value, no_value, no_value, no_value});
+        const Stability stability =
+            row.stability.value_or(Stability{no_value, no_value, no_value, no_value, no_value, no_value});
         for (const double value : {stability.flicker, stability.flicker_lower, stability.flicker_upper,
                                    stability.method_warping, stability.truth_warping, stability.temporal_variance})
             text.append(",").append(csv_number(value));

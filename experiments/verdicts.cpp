@@ -1,11 +1,12 @@
 #include "experiments/verdicts.h"
 
-#include "experiments/no_value.h"
 #include <array>
 #include <cmath>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+
+#include "experiments/no_value.h"
 
 namespace plumb {
 namespace {
