@@ -146,6 +146,7 @@ std::vector<EqualRow> equal_rows(const RunResults& results) {
         std::vector<AveragedPoint> methods = averaged_points(results, subject);
         std::erase_if(methods, [](const AveragedPoint& point) { return point.path_tracer_samples > 0; });
         std::vector<CostPoint> points;
+        points.reserve(methods.size());
         for (const AveragedPoint& method : methods) points.push_back(method.mean());
         const std::vector<std::size_t> front = pareto_front(points);
         for (std::size_t i = 0; i < methods.size(); ++i) {

@@ -109,9 +109,10 @@ void write_figures(const RunResults& results, const std::filesystem::path& folde
     fmt::print("Figure  {}\n", (folder / "accuracy.svg").string());
 }
 
-RunResults run_comparison(const RunOptions& run_options, const CommonOptions& common, const Experiment& experiment) {
+RunResults run_comparison(const RunOptions& run_options, const CommonOptions& common, Experiment experiment) {
     const SceneFinder finder(common.scenes_dirs);
     print_question(experiment.title, experiment.question);
+    for (const std::string& scene : leave_out_absent_scenes(experiment, finder)) fmt::print("left out: {}\n", scene);
     fmt::print("{}\n", describe_disk_use(disk_use(experiment, finder, run_options.write_frames), run_options.cache_dir,
                                          run_options.output));
     std::fflush(stdout);
@@ -174,7 +175,7 @@ int run(const RunCommandOptions& options, const CommonOptions& common) {
     if (options.quick) make_quick(experiment);
     RunOptions run_options = run_options_of(options, experiment.name);
     run_options.experiment_text = text;
-    return exit_code_of(run_comparison(run_options, common, experiment));
+    return exit_code_of(run_comparison(run_options, common, std::move(experiment)));
 }
 
 }  // namespace

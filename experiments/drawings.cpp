@@ -56,6 +56,7 @@ Tap spiral_point(const SpiralDrawing& spiral, double along) {
 // Taps lie in the middle of their share of the spiral (sample_spiral.h, a jitter of one half).
 std::vector<Tap> taps_of(const SpiralDrawing& spiral) {
     std::vector<Tap> taps;
+    taps.reserve(static_cast<std::size_t>(spiral.samples));
     for (int i = 0; i < spiral.samples; ++i) taps.push_back(spiral_point(spiral, (i + 0.5) / spiral.samples));
     return taps;
 }
@@ -109,9 +110,10 @@ std::string grey_square(const std::vector<double>& values, int size, double left
     for (int i = 0; i < size * size; ++i) {
         const auto grey = static_cast<int>(std::lround(255.0 * values[static_cast<std::size_t>(i)] / brightest));
         // A little wider than they are, so that no seam shows between them.
+        const int column = i % size, row = i / size;
         svg += fmt::format(
             "<rect x=\"{0:.2f}\" y=\"{1:.2f}\" width=\"{2:.2f}\" height=\"{2:.2f}\" fill=\"rgb({3},{3},{3})\"/>\n",
-            left + pixel * (i % size), top + pixel * (i / size), pixel + 0.05, grey);
+            left + pixel * column, top + pixel * row, pixel + 0.05, grey);
     }
     return svg;
 }

@@ -35,6 +35,7 @@ std::vector<Timing> time_interleaved(const std::vector<Pipeline*>& pipelines, co
         }
     }
     std::vector<Timing> timings;
+    timings.reserve(frames.size());
     for (const std::vector<Timing>& of_pipeline : frames) timings.push_back(median_timing(of_pipeline));
     return timings;
 }

@@ -40,8 +40,8 @@ CostCurve::CostCurve(std::vector<CostPoint> points) : points_(std::move(points))
 
 std::optional<CurveReading> CostCurve::error_at(double milliseconds) const {
     std::vector<CostPoint> distinct = points_;
-    const auto repeated = std::ranges::unique(distinct, {}, &CostPoint::milliseconds);
-    distinct.erase(repeated.begin(), repeated.end());
+    const auto takes_as_long = [](const CostPoint& a, const CostPoint& b) { return a.milliseconds == b.milliseconds; };
+    distinct.erase(std::unique(distinct.begin(), distinct.end(), takes_as_long), distinct.end());
     if (distinct.size() < 2) return std::nullopt;
     std::size_t next = 1;
     while (next + 1 < distinct.size() && distinct[next].milliseconds < milliseconds) ++next;

@@ -43,14 +43,16 @@ double mean_named(const std::vector<std::pair<std::string, double>>& measures, s
 
 // What one method makes of one plane, frame after frame.
 struct PathRun::Series {
-    Series(const Experiment& experiment, std::string of_plane, std::string of_method)
+    Series(const Experiment& experiment, std::string of_plane, std::string of_method, int of_oracle_layers = -1)
         : plane(std::move(of_plane)),
           method(std::move(of_method)),
+          oracle_layers(of_oracle_layers),
           settings(error_settings(experiment)),
           error(SeriesOf::frames, settings),
           stability(plane, stability_settings(experiment)) {}
 
     std::string plane, method;
+    int oracle_layers;  // as ResultRow has it
     ReferencedErrorSettings settings;
     std::unique_ptr<Pipeline> pipeline;
     int gbuffer_bytes_per_pixel = 0;
@@ -109,6 +111,7 @@ std::vector<std::vector<PlaneImage>> PathRun::load_cells() const {
 
 void PathRun::make_pipelines(RunResults& results) {
     for (const std::unique_ptr<Series>& series : series_) {
+        if (series->oracle_layers >= 0) continue;
         const Quantities quantities = quantities_of(experiment_, entry_, series->plane);
         const Method method =
             method_in_scene(*find_method(experiment_.methods, series->method), entry_, experiment_.file.string());
@@ -122,7 +125,8 @@ void PathRun::make_pipelines(RunResults& results) {
                  error.what()});
         }
     }
-    std::erase_if(series_, [](const std::unique_ptr<Series>& series) { return !series->pipeline; });
+    std::erase_if(series_,
+                  [](const std::unique_ptr<Series>& series) { return series->oracle_layers < 0 && !series->pipeline; });
 }
 
 // The planes that are compared, with their halves, and the exact G-buffer.
@@ -180,6 +184,37 @@ std::vector<PlaneImage> PathRun::render_methods(int frame, const Frame& truth, R
     return images;
 }
 
+// With the truth's own samples, as for still views: what both have in common cancels.
+std::vector<PlaneImage> PathRun::render_oracle(int frame, const Frame& truth, RunResults& results) {
+    std::vector<PlaneImage> images;
+    ReferenceSettings settings = full_truth_settings(experiment_, entry_);
+    settings.samples = reference_samples_;
+    settings.quantities.planes = experiment_.planes;
+    std::erase_if(settings.quantities.planes, [&](const std::string& plane) { return !truth.has("half_a." + plane); });
+    if (settings.quantities.planes.empty()) return images;
+    const Moment before = at(frame - 1), now = at(frame);
+    const TimeSpan span = now.time ? TimeSpan{*before.time, *now.time} : TimeSpan{};
+    for (const int layers : experiment_.oracle_layers) {
+        if (stopped()) return images;
+        settings.oracle = OracleSettings{now.view, layers, entry_.minimum_separation};
+        const std::string name = oracle_name(layers);
+        const double end = static_cast<double>(frame + 1) / path_.frames;
+        ReferenceResult result = references_.render(
+            *tracer_, scene_, now.view, settings,
+            {entry_.scene, fmt::format("{}, frame {} of {}", path_.path, frame + 1, path_.frames), name},
+            control_.part.part(end, end), results, span);
+        if (!result.complete) return images;
+        for (const std::string& plane : settings.quantities.planes) {
+            PlaneImage& image =
+                images.emplace_back(PlaneImage{path_.path, plane, name, std::move(result.frame.plane(plane))});
+            image.oracle_layers = layers;
+            image.halves = {std::move(result.frame.plane("half_a." + plane)),
+                            std::move(result.frame.plane("half_b." + plane))};
+        }
+    }
+    return images;
+}
+
 void PathRun::add(const PlaneImage& image, int frame, const Frame& truth, const std::vector<Region>& regions) {
     const auto found = std::ranges::find_if(series_, [&](const std::unique_ptr<Series>& series) {
         return series->plane == image.plane && series->method == image.method;
@@ -187,6 +222,10 @@ void PathRun::add(const PlaneImage& image, int frame, const Frame& truth, const 
     Series& series = **found;
     Frame test(image.image.width(), image.image.height());
     test.set(image.plane, image.image);
+    if (image.halves) {
+        test.set("half_a." + image.plane, image.halves->a);
+        test.set("half_b." + image.plane, image.halves->b);
+    }
     ComparisonSettings settings;
     settings.referenced = series.settings;
     Frame reference(truth.width(), truth.height());
@@ -218,6 +257,8 @@ void PathRun::run(RunResults& results) {
     for (const std::string& plane : experiment_.planes) {
         for (const Method& method : experiment_.methods)
             series_.push_back(std::make_unique<Series>(experiment_, plane, method.name));
+        for (const int layers : experiment_.oracle_layers)
+            series_.push_back(std::make_unique<Series>(experiment_, plane, oracle_name(layers), layers));
     }
     const std::vector<std::vector<PlaneImage>> kept = load_cells();
     if (kept.empty()) make_pipelines(results);
@@ -230,6 +271,9 @@ void PathRun::run(RunResults& results) {
         if (kept.empty() && images.size() == experiment_.planes.size() * experiment_.methods.size())
             control_.cells.save(cell_key(frame), images);
         for (const PlaneImage& image : images) add(image, frame, truth, regions);
+        const std::vector<PlaneImage> oracle = render_oracle(frame, truth, results);
+        if (stopped()) return;
+        for (const PlaneImage& image : oracle) add(image, frame, truth, regions);
         for (std::size_t plane = 0; plane < truths_.size(); ++plane)
             truths_[plane].push_back(truth.plane(experiment_.planes[plane]));
     }
@@ -246,7 +290,8 @@ void PathRun::write_rows(RunResults& results) {
         ResultRow row;
         row.scene = entry_.scene, row.path = path_.path, row.plane = series->plane, row.method = series->method;
         row.truth = full_truth_name(series->plane);
-        describe_method(experiment_, entry_, series->method, row);
+        row.oracle_layers = series->oracle_layers;
+        if (row.is_method()) describe_method(experiment_, entry_, series->method, row);
         row.reference_samples = reference_samples_;
         row.gbuffer_bytes_per_pixel = series->gbuffer_bytes_per_pixel;
         row.measures = series->measures.means();
@@ -265,7 +310,7 @@ void PathRun::write_rows(RunResults& results) {
         row.stability =
             Stability{stability.flicker.value,        stability.flicker.lower,       stability.flicker.upper,
                       stability.method_warping.value, stability.truth_warping.value, stability.temporal_variance.value};
-        row.timing = median_timing(series->timings);
+        if (row.is_method()) row.timing = median_timing(series->timings);
         results.rows.push_back(std::move(row));
     }
 }
@@ -275,7 +320,7 @@ void PathRun::write_pictures(RunResults& results) {
         const std::string& name = experiment_.planes[plane];
         std::vector<PathImages> methods;
         for (const std::unique_ptr<Series>& series : series_) {
-            if (series->plane != name) continue;
+            if (series->plane != name || series->oracle_layers >= 0) continue;
             PathImages& images = methods.emplace_back(PathImages{series->method, {}, {}, {}});
             for (const Image& image : series->images) images.frames.push_back(&image);
             for (const FrameMeasure& frame : series->frames)

@@ -1,5 +1,5 @@
 // One camera path of an experiment's scene: every frame rendered by the path tracer and, in turn, by every method as
-// it would in motion, with its history; the error over all frames, and how steady it is.
+// it would in motion, with its history, and by the oracle; the error over all frames, and how steady it is.
 #pragma once
 
 #include <filesystem>
@@ -33,6 +33,7 @@ private:
     void make_pipelines(RunResults& results);
     Frame render_truth(int frame, RunResults& results);
     std::vector<PlaneImage> render_methods(int frame, const Frame& truth, RunResults& results);
+    std::vector<PlaneImage> render_oracle(int frame, const Frame& truth, RunResults& results);
     void add(const PlaneImage& image, int frame, const Frame& truth, const std::vector<Region>& regions);
     void write_rows(RunResults& results);
     void write_pictures(RunResults& results);
@@ -46,7 +47,7 @@ private:
     ReferenceRenderer references_;
     bool scene_moves_ = false;
     std::unique_ptr<PathTracer> tracer_;
-    std::vector<std::unique_ptr<Series>> series_;  // by plane, then by method
+    std::vector<std::unique_ptr<Series>> series_;  // by plane, then by method; the oracle's follow the methods'
     std::vector<std::vector<Image>> truths_;       // by plane, then by frame: for pictures
     int reference_samples_ = 0;                    // the fewest of any frame
 };

@@ -37,6 +37,7 @@ std::string ResultTable::print_markdown() const {
 std::string ResultTable::print_csv() const {
     const auto print_line = [](const std::vector<std::string>& cells) {
         std::vector<std::string> quoted;
+        quoted.reserve(cells.size());
         for (const std::string& cell : cells) quoted.push_back(csv_text(cell));
         return fmt::format("{}\n", fmt::join(quoted, ","));
     };

@@ -20,7 +20,10 @@ namespace {
 struct Subject {
     std::string plane, truth;  // the truth's kind
     bool paths = false;        // camera paths, or still views
-    auto operator<=>(const Subject&) const = default;
+    bool operator<(const Subject& other) const {
+        return std::tie(plane, truth, paths) < std::tie(other.plane, other.truth, other.paths);
+    }
+    bool operator==(const Subject&) const = default;
 };
 
 // Rows by place (scene and view or path), then by method.
@@ -83,6 +86,11 @@ bool comparable(const ResultRow& row, const ResultRow& base) {
     return row.measured && base.measured && row.rmse() > 0.0 && base.rmse() > 0.0;
 }
 
+// Where the truth's noise leaves open whether an image flickers at all, the interval begins at zero.
+bool flickers_known(const ResultRow& row, const ResultRow& base) {
+    return row.stability && base.stability && row.stability->flicker_lower > 0.0 && base.stability->flicker_lower > 0.0;
+}
+
 // One method against the baseline.
 std::string compare(const Subject& subject, const Cells& cells, const std::string& method,
                     const std::string& baseline) {
@@ -93,8 +101,7 @@ std::string compare(const Subject& subject, const Cells& cells, const std::strin
         const ResultRow &row = *rows.at(method), &base = *rows.at(baseline);
         if (base.timing.median > 0.0 && row.timing.median > 0.0)
             times.push_back(row.timing.median / base.timing.median);
-        if (row.stability && base.stability && row.stability->flicker > 0.0 && base.stability->flicker > 0.0)
-            flickers.push_back(row.stability->flicker / base.stability->flicker);
+        if (flickers_known(row, base)) flickers.push_back(row.stability->flicker / base.stability->flicker);
         if (comparable(row, base))
             errors.push_back(row.rmse() / base.rmse());
         else
@@ -127,21 +134,23 @@ std::vector<std::string> compare_oracles(const Subject& subject, const Cells& ce
     for (const auto& [layers, name] : names) {
         const std::string* fewer = std::exchange(before, &name);
         if (!fewer) continue;
-        std::vector<double> ratios;
+        std::vector<double> ratios, flickers;
         for (const auto& [place, rows] : cells) {
             if (!rows.contains(name) || !rows.contains(*fewer)) continue;
-            if (comparable(*rows.at(name), *rows.at(*fewer)))
-                ratios.push_back(rows.at(name)->rmse() / rows.at(*fewer)->rmse());
+            const ResultRow &row = *rows.at(name), &base = *rows.at(*fewer);
+            if (comparable(row, base)) ratios.push_back(row.rmse() / base.rmse());
+            if (flickers_known(row, base)) flickers.push_back(row.stability->flicker / base.stability->flicker);
         }
         if (ratios.empty()) {
-            sentences.push_back(fmt::format("In principle, {}: no view allows a statement about '{}' against '{}'.",
-                                            name_of(subject), name, *fewer));
+            sentences.push_back(fmt::format("In principle, {}: no {} allows a statement about '{}' against '{}'.",
+                                            name_of(subject), subject.paths ? "path" : "view", name, *fewer));
             continue;
         }
         const RatioSummary ratio = summarise_ratios(ratios);
-        sentences.push_back(fmt::format("In principle, {}: the best possible RMSE of '{}' is {} that of '{}' over {}.",
-                                        name_of(subject), name, ratio_text(ratio), *fewer,
-                                        count_text(ratio.count, subject)));
+        std::string text = fmt::format("In principle, {}: the best possible RMSE of '{}' is {} that of '{}'",
+                                       name_of(subject), name, ratio_text(ratio), *fewer);
+        if (!flickers.empty()) text += fmt::format(", its flicker {}", ratio_text(summarise_ratios(flickers)));
+        sentences.push_back(fmt::format("{}, over {}.", text, count_text(ratio.count, subject)));
     }
     return sentences;
 }

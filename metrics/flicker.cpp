@@ -22,13 +22,15 @@ struct Changes {
 
 Changes changes_at(const FrameErrors& before, const FrameErrors& now, const BilinearPlace& place, int x, int y) {
     Changes changes;
+    const bool paired = !now.second_half.empty() && !before.second_half.empty();
     for (int c = 0; c < now.method.channels(); ++c) {
         const double method = now.method.at(x, y, c) - place.look_up(before.method, c);
+        const double other = paired ? now.second_half.at(x, y, c) - place.look_up(before.second_half, c) : method;
         const double a = now.error_a.at(x, y, c) - place.look_up(before.error_a, c);
         const double b = now.error_b.at(x, y, c) - place.look_up(before.error_b, c);
         changes.error += a * b;
-        changes.method += method * method;
-        changes.truth += (method - a) * (method - b);
+        changes.method += method * other;
+        changes.truth += (method - a) * (other - b);
         changes.noise += 0.25 * (a - b) * (a - b);
     }
     return changes;
@@ -46,17 +48,19 @@ void require_motion_planes(const FrameErrors& frame, int width, int height) {
 
 FrameErrors FrameErrors::of(const Frame& method, const Frame& truth, std::string_view plane) {
     FrameErrors frame;
-    frame.method = method.plane(plane);
-    const std::string a = fmt::format("half_a.{}", plane), b = fmt::format("half_b.{}", plane);
-    const bool halves = truth.has(a) && truth.has(b);
-    for (const auto& [error, name] : {std::pair{&frame.error_a, halves ? a : std::string(plane)},
-                                      {&frame.error_b, halves ? b : std::string(plane)}}) {
-        require_same_shape(frame.method, truth.plane(name), fmt::format("plane '{}' of method and truth", name));
-        *error = signed_difference(frame.method, truth.plane(name));
-    }
-    for (const auto& [image, name] :
+    const std::string name(plane), a = fmt::format("half_a.{}", plane), b = fmt::format("half_b.{}", plane);
+    const bool halves = truth.has(a) && truth.has(b), paired = halves && method.has(a) && method.has(b);
+    frame.method = method.plane(paired ? a : name);
+    if (paired) frame.second_half = method.plane(b);
+    const auto error = [&](const Image& image, const std::string& of_truth) {
+        require_same_shape(image, truth.plane(of_truth), fmt::format("plane '{}' of method and truth", of_truth));
+        return signed_difference(image, truth.plane(of_truth));
+    };
+    frame.error_a = error(frame.method, halves ? a : name);
+    frame.error_b = error(paired ? frame.second_half : frame.method, halves ? b : name);
+    for (const auto& [image, of_truth] :
          {std::pair{&frame.motion, "motion"}, {&frame.depth, "depth"}, {&frame.position, "position"}}) {
-        if (truth.has(name)) *image = truth.plane(name);
+        if (truth.has(of_truth)) *image = truth.plane(of_truth);
     }
     return frame;
 }

@@ -9,8 +9,9 @@
 //
 // A path-traced truth flickers by its own noise. Where it has halves A and B the mean squares are those of
 // referenced_error.h, mean (change of M - A)(change of M - B) and mean (change of A)(change of B), which that noise
-// does not bias: A and B are independent of each other in every frame, also where frames share their seed. The 95 %
-// interval is that of a block bootstrap over the squared changes.
+// does not bias: A and B are independent of each other in every frame, also where frames share their seed. Where the
+// method has halves too (the oracle, itself path-traced), each is compared with the truth's half of that name, and the
+// method's own noise biases nothing either. The 95 % interval is that of a block bootstrap over the squared changes.
 //
 // The value at p + motion is interpolated bilinearly; which pixels are visible in both frames, surface_motion.h says.
 // The others (uncovered, outside the previous view, no surface, and surfaces that moved by themselves) are counted.
@@ -45,14 +46,16 @@ struct Flicker {
 };
 
 // The truth's frame of now needs planes motion, position and depth, the one of before position; both frames of method
-// and truth need `plane`, and halves of it count where both truths have them. Motion is in pixels, from the place now
+// and truth need `plane`; halves of the truth's count where both truths have them, and halves of the method's beside
+// those. Motion is in pixels, from the place now
 // to the place before. Throws ImageError for missing planes and different shapes.
 Flicker flicker(const Frame& method_before, const Frame& truth_before, const Frame& method_now, const Frame& truth_now,
                 std::string_view plane, const FlickerSettings& settings = {});
 
 // What stability needs to know of one frame of a method and its truth.
 struct FrameErrors {
-    Image method;
+    Image method;                   // its first half where it has halves
+    Image second_half;              // empty where it has none
     Image error_a, error_b;         // method - truth, against each half; the same where the truth has no halves
     Image motion, depth, position;  // the truth's; motion and depth may be missing of a frame with none after it
 

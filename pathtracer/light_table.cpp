@@ -195,6 +195,7 @@ LightSample LightTable::sample_extended(const LightReceiver& receiver, double x,
 // Weighted reservoir sampling: each light replaces the one kept so far with probability weight / (sum so far), and the
 // random number is stretched to be used again.
 LightSample LightTable::sample_without_extent(const LightReceiver& receiver, float pick) const {
+    if (lights_without_extent_ == 1) return light_without_extent(0, receiver.origin);
     LightSample kept;
     double sum = 0.0, kept_weight = 0.0, u = pick;
     for (std::size_t i = 0; i < lights_without_extent_; ++i) {

@@ -98,6 +98,7 @@ private:
     void reserve(const TimeSpan& span);
     void add(std::uint32_t index, const TimeSpan& span);
     void attach(std::uint32_t index);
+    void fetch_corners(const HitBatch& hits, const MetRays& met) const;
     void gather_corners(const HitBatch& hits, const MetRays& met, CornerLanes& corners) const;
     void look_up_textures(const HitBatch& hits, const MetRays& met, const Lanes<float>& lit,
                           SurfaceLanes& points) const;

@@ -26,7 +26,7 @@ constexpr std::array<Term, 9> terms = {{{"direct", "DIRECT"},
                                         {"depth", "DEPTH"},
                                         {"normal", "NORMAL"},
                                         {"albedo", "ALBEDO"}}};
-constexpr std::size_t lights = 4;  // the first of them are radiance that is added
+constexpr std::size_t light_terms = 4;  // the first of them are radiance that is added
 constexpr GLuint composite_ambient_unit = terms.size();
 
 // What ambient light is reflected by is what direct and indirect light are reflected by.
@@ -105,7 +105,7 @@ PassDeclaration declare_composite(const Scene& scene, const Method& method) {
     for (std::size_t unit = 0; unit < terms.size(); ++unit) {
         const Term& term = terms[unit];
         if (!is_read(term.plane, scene, method)) continue;
-        if (unit < lights) pass.remark += pass.inputs.empty() ? term.plane : fmt::format(" + {}", term.plane);
+        if (unit < light_terms) pass.remark += pass.inputs.empty() ? term.plane : fmt::format(" + {}", term.plane);
         pass.inputs.push_back(plane_of(term, scene, method));
     }
     if (is_demo(method))

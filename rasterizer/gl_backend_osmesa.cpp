@@ -53,7 +53,7 @@ public:
           destroy_(library_.symbol<decltype(&OSMesaDestroyContext)>("OSMesaDestroyContext")),
           make_current_(library_.symbol<decltype(&OSMesaMakeCurrent)>("OSMesaMakeCurrent")),
           function_(library_.symbol<decltype(&OSMesaGetProcAddress)>("OSMesaGetProcAddress")),
-          colour_buffer_(4 * buffer_size * buffer_size) {
+          colour_buffer_(std::size_t{4} * buffer_size * buffer_size) {
         const std::array<int, 11> attributes{OSMESA_FORMAT,
                                              OSMESA_RGBA,
                                              OSMESA_PROFILE,

@@ -35,6 +35,7 @@ GlFramebuffer make_carry_target(const PassResources& resources) {
     const GlTexture& sent =
         resources.planes.create(name, texture_format(resources.method.gbuffer.radiance_format), layers);
     std::vector<GlAttachment> attachments;
+    attachments.reserve(static_cast<std::size_t>(layers));
     for (int layer = 0; layer < layers; ++layer) attachments.push_back({&sent, layer, 0});
     return GlFramebuffer(resources.context, attachments, {}, "radiosity carried on");
 }

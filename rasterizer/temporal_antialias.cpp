@@ -45,6 +45,7 @@ std::vector<glm::vec2> jitter_offsets(const AntialiasSettings& settings) {
     glm::dvec2 mean(0.0);
     for (int i = 0; i < settings.jitter_length; ++i) mean += point(i) / static_cast<double>(settings.jitter_length);
     std::vector<glm::vec2> offsets;
+    offsets.reserve(static_cast<std::size_t>(settings.jitter_length));
     for (int i = 0; i < settings.jitter_length; ++i) offsets.emplace_back(point(i) - mean);
     return offsets;
 }

@@ -25,7 +25,8 @@ namespace {
 constexpr int lattice_size = 64;  // per side; cells wrap at multiples of `cells`, well below it
 }
 
-PeriodicNoise::PeriodicNoise(int cells, std::uint32_t seed) : cells_(cells), lattice_(lattice_size * lattice_size) {
+PeriodicNoise::PeriodicNoise(int cells, std::uint32_t seed)
+    : cells_(cells), lattice_(static_cast<std::size_t>(lattice_size) * lattice_size) {
     Random random(seed);
     for (float& value : lattice_) value = random.uniform();
 }

@@ -2,6 +2,10 @@
 
 #include <cmath>
 
+#ifdef __F16C__
+#include <immintrin.h>
+#endif
+
 namespace plumb {
 namespace {
 
@@ -38,7 +42,13 @@ glm::vec4 Texture::sample(glm::vec2 uv) const {
     const int y1 = wrapped(static_cast<int>(y_floor) + 1, height, wrap_v);
     const auto texel = [&](int i, int j) {
         const half* t = &texels[4 * (static_cast<std::size_t>(j) * width + i)];
+#ifdef __F16C__  // all four at once: this runs for every hit
+        glm::vec4 value;
+        _mm_storeu_ps(&value.x, _mm_cvtph_ps(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(t))));
+        return value;
+#else
         return glm::vec4(t[0], t[1], t[2], t[3]);
+#endif
     };
     return glm::mix(glm::mix(texel(x0, y0), texel(x1, y0), fx), glm::mix(texel(x0, y1), texel(x1, y1), fx), fy);
 }

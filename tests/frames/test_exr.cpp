@@ -163,8 +163,9 @@ struct Foreign {
     OIIO::ImageSpec spec;
     std::vector<float> pixels;
 
-    Foreign(int width, int height, std::vector<std::string> channels, OIIO::TypeDesc type)
-        : spec(width, height, static_cast<int>(channels.size()), type), pixels(width * height * channels.size()) {
+    Foreign(int width, int height, std::vector<std::string> channels, const OIIO::TypeDesc& type)
+        : spec(width, height, static_cast<int>(channels.size()), type),
+          pixels(channels.size() * static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {
         spec.channelnames = std::move(channels);
         std::iota(pixels.begin(), pixels.end(), 0.0f);
     }

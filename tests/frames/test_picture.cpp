@@ -37,7 +37,7 @@ std::string picture_message(const std::filesystem::path& path) {
 
 // Writes integer samples as they are.
 template <typename Sample>
-void write_samples(const std::filesystem::path& path, int width, int height, int channels, OIIO::TypeDesc type,
+void write_samples(const std::filesystem::path& path, int width, int height, int channels, const OIIO::TypeDesc& type,
                    const std::vector<Sample>& samples, const char* space = nullptr) {
     OIIO::ImageSpec spec(width, height, channels, type);
     spec["oiio:UnassociatedAlpha"] = 1;

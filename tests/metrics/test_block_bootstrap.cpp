@@ -12,6 +12,7 @@ namespace {
 // One value per block.
 std::vector<BlockSum> blocks_of(const std::vector<double>& values) {
     std::vector<BlockSum> blocks;
+    blocks.reserve(values.size());
     for (const double value : values) blocks.push_back({value, 1});
     return blocks;
 }

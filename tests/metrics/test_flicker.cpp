@@ -27,6 +27,25 @@ TEST(Flicker, OfAnErrorThatStaysIsZeroAndOfOneThatChangesSignIsTwiceTheError) {
     EXPECT_EQ(changing.pixels, static_cast<std::size_t>(width * height));
 }
 
+TEST(Flicker, OfAMethodInHalvesIsThatOfEachHalfAgainstTheTruthsOwn) {
+    // Halves a and b of the truth gain 1 and 2 from frame to frame, those of the method 3 and 5: errors gain 2 and 3.
+    const auto in_halves = [](float a, float b) {
+        Frame frame = wall(0, texture);
+        const Image base = frame.plane("direct");
+        for (const auto& [name, offset] : {std::pair{"half_a.direct", a}, {"half_b.direct", b}}) {
+            Image half = base;
+            for (float& value : half.values()) value += offset;
+            frame.set(name, half);
+        }
+        return frame;
+    };
+    const Flicker result = flicker(in_halves(0, 0), in_halves(0, 0), in_halves(3, 5), in_halves(1, 2), "direct");
+    EXPECT_NEAR(result.rms, std::sqrt(2.0 * 3.0), 4 * float32);
+    EXPECT_NEAR(result.method_warping, std::sqrt(3.0 * 5.0), 4 * float32);
+    EXPECT_NEAR(result.truth_warping, std::sqrt(1.0 * 2.0), 4 * float32);
+    EXPECT_NEAR(result.noise, 0.5 * (3.0 - 2.0), 4 * float32);
+}
+
 TEST(Flicker, WhatTheTruthItselfDoesCancels) {
     const auto bright = [](double s) { return 2 * texture(s); };
     const Flicker result = flicker(wall(0, texture), wall(0, texture), wall(0, bright), wall(0, bright), "direct");
@@ -43,7 +62,7 @@ TEST(Flicker, FollowsSurfacePointsThroughMotionByWholeAndByFractionsOfPixels) {
         EXPECT_NEAR(result.rms, 0.0, 2 * float32) << "pan by " << pan << ": bilinear look-ups are exact on ramps";
         const auto outside = static_cast<std::size_t>(std::ceil(std::abs(pan))) * height;
         EXPECT_EQ(result.not_visible, outside) << "pan by " << pan;
-        EXPECT_EQ(result.pixels, width * height - outside) << "pan by " << pan;
+        EXPECT_EQ(result.pixels, std::size_t{width} * height - outside) << "pan by " << pan;
     }
 }
 

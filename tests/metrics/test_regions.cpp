@@ -37,6 +37,7 @@ const Region& region(const std::vector<Region>& regions, const std::string& name
 
 std::vector<std::string> names_of(const std::vector<Region>& regions) {
     std::vector<std::string> names;
+    names.reserve(regions.size());
     for (const Region& each : regions) names.push_back(each.name);
     return names;
 }
