@@ -27,6 +27,7 @@ TEST(MethodFile, BuiltInMethodsDifferInTheirLayersOnly) {
     const MethodList methods = builtin_methods();
     const auto differences = diff_methods(*find_method(methods, "one_layer"), *find_method(methods, "two_layers"));
     std::vector<std::string> names;
+    names.reserve(differences.size());
     for (const MethodDifference& difference : differences) names.push_back(difference.parameter);
     EXPECT_THAT(names, testing::ElementsAre("gbuffer.layers", "ao.layers", "radiosity.layers"));
 }

@@ -102,6 +102,7 @@ TEST(ReferenceCache, OfManyThatWantTheSameOneRendersAndTheOthersWait) {
     Renderer renderer;
     std::atomic<int> hits{0};
     std::vector<std::thread> threads;
+    threads.reserve(8);
     // flock() locks per open file, so threads exclude each other just as programs do.
     for (int i = 0; i < 8; ++i) {
         threads.emplace_back([&] {

@@ -71,7 +71,8 @@ TEST(DirectionalLight, ComesNotThroughASurface) {
 TEST(LightsWithoutExtent, AddUpAlsoWhereOneIsChosen) {
     Scene scene = floor_scene();
     for (int i = 0; i < 9; ++i) {
-        const auto x = static_cast<float>(i % 3 - 1), z = static_cast<float>(i / 3 - 1);
+        const int column = i % 3 - 1, row = i / 3 - 1;
+        const auto x = static_cast<float>(column), z = static_cast<float>(row);
         scene.point_lights.push_back({"lamp", {x, 1.0f + 0.3f * x, z}, glm::vec3(1.0f + 0.2f * static_cast<float>(i))});
     }
     const View view = floor_view();

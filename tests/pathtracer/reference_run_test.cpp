@@ -63,10 +63,12 @@ TEST(Reference, VarianceIsThatOfTheMeansOverSeeds) {
     constexpr int seeds = 16;
     auto settings = settings_for({"ao", "direct"}, 32);
     for (const std::string plane : {"ao", "direct"}) {
-        std::vector<double> sum(view.width() * view.height() * 3), square(sum.size());
+        std::vector<double> sum(std::size_t{3} * static_cast<std::size_t>(view.width()) *
+                                static_cast<std::size_t>(view.height())),
+            square(sum.size());
         double claimed = 0.0;
         for (int seed = 0; seed < seeds; ++seed) {
-            settings.seed = static_cast<std::uint64_t>(100 + seed);
+            settings.seed = 100 + static_cast<std::uint64_t>(seed);
             const Frame frame = tracer.render(view, settings).frame;
             const auto mean = frame.plane(plane).values(), variance = frame.plane("variance." + plane).values();
             for (std::size_t i = 0; i < mean.size(); ++i) {

@@ -74,8 +74,8 @@ void expect_uniform_cells(const Cell& cell, const char* what) {
         ++hits[static_cast<std::size_t>(std::clamp(cell(sequence.point(0)), 0, cells - 1))];
     }
     double statistic = 0.0;
-    for (const int hit : hits)
-        statistic += (hit - count / cells) * (hit - count / cells) / (static_cast<double>(count) / cells);
+    const double expected = static_cast<double>(count) / cells;
+    for (const int hit : hits) statistic += (hit - expected) * (hit - expected) / expected;
     EXPECT_LT(statistic, 120.0) << what;
 }
 

@@ -140,7 +140,7 @@ void probe(benchmark::State& state) {
     state.counters["taps"] = method.environment.samples;
 }
 
-void three_sizes(benchmark::internal::Benchmark* cases, std::vector<std::int64_t> sizes) {
+void three_sizes(benchmark::internal::Benchmark* cases, const std::vector<std::int64_t>& sizes) {
     cases->ArgName("size")->UseManualTime()->Unit(benchmark::kMillisecond)->Iterations(3);
     for (const std::int64_t size : sizes) cases->Arg(size);
 }

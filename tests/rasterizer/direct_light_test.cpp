@@ -82,7 +82,8 @@ TEST_P(DirectLightTest, PointLightFallsWithTheSquareOfTheDistance) {
 }
 
 TEST_P(DirectLightTest, SpotLightFollowsItsCone) {
-    for (const auto& [inner, outer] : {std::pair{0.3f, 0.7f}, std::pair{0.5f, 0.5f}, std::pair{0.9f, 1.4f}}) {
+    for (const glm::vec2 angles : {glm::vec2(0.3f, 0.7f), glm::vec2(0.5f, 0.5f), glm::vec2(0.9f, 1.4f)}) {
+        const float inner = angles.x, outer = angles.y;
         Scene scene = make_corner();
         scene.spot_lights.push_back(
             {"spot", {0.6f, 2.1f, 0.5f}, glm::normalize(glm::vec3(-0.5f, -1.0f, -0.6f)), {20, 15, 10}, inner, outer});

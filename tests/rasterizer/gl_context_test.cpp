@@ -52,7 +52,7 @@ TEST_P(GlContextTest, CountsTheBytesOfLivingObjects) {
         EXPECT_EQ(context().allocated_bytes() - before, 16u * 8 * 2 * 8);
         GlTexture moved = std::move(texture);
         EXPECT_EQ(context().allocated_bytes() - before, 16u * 8 * 2 * 8);
-        EXPECT_EQ(texture.id(), 0u);
+        EXPECT_EQ(texture.id(), 0u);  // NOLINT(bugprone-use-after-move): what moving leaves
         moved = GlTexture::flat(context(), GL_R32F, 4, 4, 3);
         EXPECT_EQ(context().allocated_bytes() - before, (16u + 4 + 1) * 4);
         const GlBuffer buffer(context(), 100, nullptr, GL_DYNAMIC_STORAGE_BIT);

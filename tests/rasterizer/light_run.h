@@ -21,8 +21,8 @@ namespace plumb {
 class LightRun {
 public:
     // `scene` outlives the run. `counts_fragments` of the light volumes.
-    LightRun(GlContext& context, const Scene& scene, Method method, std::vector<std::string> wanted, const View& view,
-             bool counts_fragments = true)
+    LightRun(GlContext& context, const Scene& scene, Method method, const std::vector<std::string>& wanted,
+             const View& view, bool counts_fragments = true)
         : context_(context),
           scene_(scene),
           method_(std::move(method)),

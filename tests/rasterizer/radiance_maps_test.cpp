@@ -160,7 +160,8 @@ TEST_P(RadianceMapsTest, DirectLightMayReadTheIrradianceCubeInsteadOfHarmonics) 
     const Image cube = render(context(), scene, view, {"direct"}, method).plane("direct");
     const auto sky = [&](const glm::dvec3& d) { return glm::dvec3(scene.environment_radiance(d)); };
     double worst_cube = 0.0, worst_harmonics = 0.0;
-    for (const auto& [x, y] : {std::pair{10, 60}, std::pair{50, 10}, std::pair{90, 60}, std::pair{48, 60}}) {
+    for (const glm::ivec2 pixel : {glm::ivec2(10, 60), glm::ivec2(50, 10), glm::ivec2(90, 60), glm::ivec2(48, 60)}) {
+        const int x = pixel.x, y = pixel.y;
         if (std::isinf(harmonics.plane("depth").at(x, y))) continue;
         const glm::dvec3 expected = vector_at(harmonics.plane("albedo"), x, y) / pi *
                                     irradiance(sky, vector_at(harmonics.plane("normal"), x, y));

@@ -9,7 +9,6 @@
 namespace plumb {
 namespace {
 
-using counterpart::Pixel;
 using RadiosityBouncesTest = GlTest;
 PLUMBLINE_BOTH_BACKENDS(RadiosityBouncesTest);
 

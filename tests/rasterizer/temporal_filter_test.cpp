@@ -194,6 +194,7 @@ TEST_P(TemporalFilterTest, TapsVaryFromFrameToFrameAndRepeatAfterACut) {
     const Quantities quantities{.planes = {"ao.of_frame"}};
     const auto frames = [&](Pipeline& pipeline) {
         std::vector<Image> images;
+        images.reserve(3);
         for (int i = 0; i < 3; ++i) images.push_back(pipeline.render(view).frame.plane("ao.of_frame"));
         return images;
     };
@@ -229,7 +230,7 @@ TEST_P(TemporalFilterTest, InAStillViewTheVarianceOfAoFallsAtLeastAsForIndepende
     method.ao.blur.radius = 0;
     Pipeline pipeline(context(), scene, method, {.planes = {"ao", "ao.of_frame"}}, width, height);
     constexpr int settling = 43, counted = 30;  // 0.85^43 = 1e-3
-    std::vector<std::vector<double>> noisy(width * height), smooth(width * height);
+    std::vector<std::vector<double>> noisy(std::size_t{width} * height), smooth(std::size_t{width} * height);
     for (int i = 0; i < settling + counted; ++i) {
         const Frame frame = pipeline.render(view).frame;
         if (i < settling) continue;
@@ -333,7 +334,7 @@ TEST_P(TemporalFilterTest, LayersFromTheTruthHaveAHistory) {
         Pipeline pipeline(context(), scene, method, {.planes = {"ao", "ao.history_weight"}}, 64, 48);
         const Frame first = pipeline.render(view, nullptr, &truth).frame;
         const Frame second = pipeline.render(view, nullptr, &truth).frame;
-        for (std::size_t i = 0; i < 64 * 48; ++i) {
+        for (std::size_t i = 0; i < std::size_t{64} * 48; ++i) {
             ASSERT_EQ(first.plane("ao.history_weight").values()[i], 0.0f);
             const bool background = std::isinf(truth.plane("depth").values()[i]);
             // 1e-3: rounding of the place between pixels.
