@@ -9,11 +9,13 @@ Timing median_timing(const std::vector<Timing>& frames) {
     if (frames.empty()) return timing;
     timing.repetitions = static_cast<int>(frames.size());
     std::vector<double> sums;
+    sums.reserve(frames.size());
     for (const Timing& frame : frames) sums.push_back(frame.median);
     timing.median = quantile(sums, 0.5);
     timing.lower_quartile = quantile(sums, 0.25), timing.upper_quartile = quantile(sums, 0.75);
     for (std::size_t pass = 0; pass < frames.front().passes.size(); ++pass) {
         std::vector<double> times;
+        times.reserve(frames.size());
         for (const Timing& frame : frames) times.push_back(frame.passes.at(pass).milliseconds);
         timing.passes.push_back({frames.front().passes[pass].pass, quantile(times, 0.5)});
     }

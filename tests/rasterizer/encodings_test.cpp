@@ -124,7 +124,7 @@ TEST(Encodings, StoredPositionsAreThoseOfTheDepth) {
         stored.gbuffer.position = PositionSource::stored;
         const auto a = render(context, scene, from_depth, {"ao", "indirect"});
         const auto b = render(context, scene, stored, {"ao", "indirect"});
-        EXPECT_EQ(b.bytes, a.bytes + std::size_t{2 * 16});
+        EXPECT_EQ(b.bytes, a.bytes + std::size_t{2} * 16u);
         for (const std::string plane : {"ao", "indirect"}) {
             const auto x = a.frame.plane(plane).values(), y = b.frame.plane(plane).values();
             std::size_t different = 0;
