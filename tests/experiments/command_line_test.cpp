@@ -143,5 +143,15 @@ TEST(CommandLine, ReferenceWritesPlanesThatCompareWithThemselves) {
     expect({"compare", exr, exr, "--fail-above", "maximum=0"}, 0, HasSubstr("indirect"));
 }
 
+TEST(Scripts, CanBeStartedAsTheReadmeSays) {
+    int scripts = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(PLUMBLINE_SOURCE_DIR "/scripts")) {
+        ++scripts;
+        EXPECT_NE(entry.status().permissions() & std::filesystem::perms::owner_exec, std::filesystem::perms::none)
+            << entry.path();
+    }
+    EXPECT_GT(scripts, 0);
+}
+
 }  // namespace
 }  // namespace plumb
