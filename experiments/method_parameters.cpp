@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "experiments/config.h"
+
 namespace plumb {
 namespace {
 
