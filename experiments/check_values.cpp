@@ -35,8 +35,7 @@ double measure_of(const ResultRow& row, const std::string& measure) {
     if (measure == "flicker") return row.stability ? row.stability->flicker : no_value;
     if (measure == "method_warping") return row.stability ? row.stability->method_warping : no_value;
     if (measure == "temporal_variance") return row.stability ? row.stability->temporal_variance : no_value;
-    const auto found = std::ranges::find(row.measures, measure, &std::pair<std::string, double>::first);
-    return found == row.measures.end() ? no_value : found->second;
+    return measure_named(row.measures, measure);
 }
 
 RowValue region_value(const ResultRow& row, const Threshold& threshold) {

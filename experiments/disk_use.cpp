@@ -50,7 +50,7 @@ DiskUse disk_use(const Experiment& experiment, const SceneFinder& finder, bool w
         const std::uintmax_t views = view_count(entry, finder);
         std::uintmax_t frames = 0;
         for (const ExperimentPath& path : entry.paths) frames += static_cast<std::uintmax_t>(path.frames);
-        use.cache += planes_of_truth * ((views * (1 + oracles) + frames) * full + views * limited);
+        use.cache += planes_of_truth * ((views + frames) * (1 + oracles) * full + views * limited);
         use.output += views * (methods + curve) * full + frames * methods * full;  // cells
         if (write_frames) use.output += views * (planes_of_truth * (full + limited) + methods * full);
         // Pictures: a byte or less per value, of truths, methods and error maps.

@@ -19,10 +19,7 @@ namespace {
 std::string truth_class(const std::string& truth) { return truth.starts_with("within") ? "limited" : truth; }
 
 double plain_measure(const Cell& cell, std::string_view measure) {
-    if (!measure.ends_with('*')) {
-        const auto found = std::ranges::find(cell.values, measure, &std::pair<std::string, double>::first);
-        return found == cell.values.end() ? no_value : found->second;
-    }
+    if (!measure.ends_with('*')) return measure_named(cell.values, measure);
     measure.remove_suffix(1);
     double sum = no_value;
     for (const auto& [name, value] : cell.values) {

@@ -11,6 +11,7 @@
 #include "experiments/mean_measures.h"
 #include "experiments/method_timing.h"
 #include "experiments/no_value.h"
+#include "experiments/oracle_images.h"
 #include "experiments/path_pictures.h"
 #include "experiments/row_measurement.h"
 #include "experiments/settling.h"
@@ -32,11 +33,6 @@ PathStabilitySettings stability_settings(const Experiment& experiment) {
     PathStabilitySettings settings;
     settings.noise_limit = experiment.reference.most_noise;
     return settings;
-}
-
-double mean_named(const std::vector<std::pair<std::string, double>>& measures, std::string_view name) {
-    const auto found = std::ranges::find(measures, name, &std::pair<std::string, double>::first);
-    return found == measures.end() ? no_value : found->second;
 }
 
 }  // namespace
@@ -129,25 +125,38 @@ void PathRun::make_pipelines(RunResults& results) {
                   [](const std::unique_ptr<Series>& series) { return series->oracle_layers < 0 && !series->pipeline; });
 }
 
-// The planes that are compared, with their halves, and the exact G-buffer.
-Frame PathRun::render_truth(int frame, RunResults& results) {
-    const Moment before = at(frame - 1), now = at(frame);
-    const TimeSpan span = now.time ? TimeSpan{*before.time, *now.time} : TimeSpan{};
-    // A scene that stands still needs one tree for all frames.
-    if (now.time || !tracer_) tracer_ = std::make_unique<PathTracer>(scene_, span);
+TimeSpan PathRun::span_to(int frame) const {
+    return scene_moves_ ? TimeSpan{*at(frame - 1).time, *at(frame).time} : TimeSpan{};
+}
+
+ReferenceSettings PathRun::truth_settings() const {
     ReferenceSettings settings = full_truth_settings(experiment_, entry_);
     settings.samples = experiment_.reference.path_samples;
-    const double frames = path_.frames;
-    ReferenceResult reference = references_.render(
-        *tracer_, scene_, now.view, settings,
-        {entry_.scene, fmt::format("{}, frame {} of {}", path_.path, frame + 1, path_.frames), "full"},
-        control_.part.part(frame / frames, (frame + 1) / frames), results, span);
+    return settings;
+}
+
+ReferenceResult PathRun::render_reference(int frame, const ReferenceSettings& settings, const std::string& truth,
+                                          const ProgressPart& part, RunResults& results) const {
+    const ProgressPart of_frame =
+        control_.part.part(static_cast<double>(frame) / path_.frames, (frame + 1.0) / path_.frames);
+    return references_.render(
+        *tracer_, scene_, at(frame).view, settings,
+        {entry_.scene, fmt::format("{}, frame {} of {}", path_.path, frame + 1, path_.frames), truth},
+        of_frame.part(part.from, part.to), results, span_to(frame));
+}
+
+// The planes that are compared, with their halves, and the exact G-buffer.
+Frame PathRun::render_truth(int frame, RunResults& results) {
+    // A scene that stands still needs one tree for all frames.
+    if (scene_moves_ || !tracer_) tracer_ = std::make_unique<PathTracer>(scene_, span_to(frame));
+    ReferenceResult reference = render_reference(frame, truth_settings(), "full", {0.0, 1.0}, results);
     if (!reference.complete) return {};
     reference_samples_ = frame == 0 ? reference.samples : std::min(reference_samples_, reference.samples);
     Frame truth = std::move(reference.frame);
     truth.facts["samples"] = fmt::format("{}", reference.samples);
+    const View before = at(frame - 1).view;
     Frame gbuffer = tracer_->gbuffer(
-        now.view, {.minimum_separation = entry_.minimum_separation, .previous_view = &before.view}, control_.threads);
+        at(frame).view, {.minimum_separation = entry_.minimum_separation, .previous_view = &before}, control_.threads);
     for (const std::string& plane : gbuffer.plane_names()) truth.set(plane, std::move(gbuffer.plane(plane)));
     return truth;
 }
@@ -184,35 +193,11 @@ std::vector<PlaneImage> PathRun::render_methods(int frame, const Frame& truth, R
     return images;
 }
 
-// With the truth's own samples, as for still views: what both have in common cancels.
 std::vector<PlaneImage> PathRun::render_oracle(int frame, const Frame& truth, RunResults& results) {
-    std::vector<PlaneImage> images;
-    ReferenceSettings settings = full_truth_settings(experiment_, entry_);
-    settings.samples = reference_samples_;
-    settings.quantities.planes = experiment_.planes;
-    std::erase_if(settings.quantities.planes, [&](const std::string& plane) { return !truth.has("half_a." + plane); });
-    if (settings.quantities.planes.empty()) return images;
-    const Moment before = at(frame - 1), now = at(frame);
-    const TimeSpan span = now.time ? TimeSpan{*before.time, *now.time} : TimeSpan{};
-    for (const int layers : experiment_.oracle_layers) {
-        if (stopped()) return images;
-        settings.oracle = OracleSettings{now.view, layers, entry_.minimum_separation};
-        const std::string name = oracle_name(layers);
-        const double end = static_cast<double>(frame + 1) / path_.frames;
-        ReferenceResult result = references_.render(
-            *tracer_, scene_, now.view, settings,
-            {entry_.scene, fmt::format("{}, frame {} of {}", path_.path, frame + 1, path_.frames), name},
-            control_.part.part(end, end), results, span);
-        if (!result.complete) return images;
-        for (const std::string& plane : settings.quantities.planes) {
-            PlaneImage& image =
-                images.emplace_back(PlaneImage{path_.path, plane, name, std::move(result.frame.plane(plane))});
-            image.oracle_layers = layers;
-            image.halves = {std::move(result.frame.plane("half_a." + plane)),
-                            std::move(result.frame.plane("half_b." + plane))};
-        }
-    }
-    return images;
+    const auto render = [&](const ReferenceSettings& settings, const std::string& name) {
+        return render_reference(frame, settings, name, {1.0, 1.0}, results);
+    };
+    return oracle_images(experiment_, entry_, path_.path, at(frame).view, truth_settings(), truth, render);
 }
 
 void PathRun::add(const PlaneImage& image, int frame, const Frame& truth, const std::vector<Region>& regions) {
@@ -220,12 +205,7 @@ void PathRun::add(const PlaneImage& image, int frame, const Frame& truth, const 
         return series->plane == image.plane && series->method == image.method;
     });
     Series& series = **found;
-    Frame test(image.image.width(), image.image.height());
-    test.set(image.plane, image.image);
-    if (image.halves) {
-        test.set("half_a." + image.plane, image.halves->a);
-        test.set("half_b." + image.plane, image.halves->b);
-    }
+    const Frame test = frame_of(image);
     ComparisonSettings settings;
     settings.referenced = series.settings;
     Frame reference(truth.width(), truth.height());
@@ -248,7 +228,7 @@ void PathRun::add(const PlaneImage& image, int frame, const Frame& truth, const 
     }
     if (const std::optional<Flicker> flicker = series.stability.add(test, truth)) measure.flicker = flicker->rms;
     series.frames.push_back(measure);
-    series.images.push_back(image.image);
+    if (series.oracle_layers < 0) series.images.push_back(image.image);  // pictures show methods
     series.timings.push_back(image.timing);
     series.gbuffer_bytes_per_pixel = image.gbuffer_bytes_per_pixel;
 }
@@ -295,8 +275,8 @@ void PathRun::write_rows(RunResults& results) {
         row.reference_samples = reference_samples_;
         row.gbuffer_bytes_per_pixel = series->gbuffer_bytes_per_pixel;
         row.measures = series->measures.means();
-        row.mse = mean_named(row.measures, "mse"), row.psnr = mean_named(row.measures, "psnr");
-        row.ssim = mean_named(row.measures, "ssim"), row.data_range = mean_named(row.measures, "data_range");
+        row.mse = measure_named(row.measures, "mse"), row.psnr = measure_named(row.measures, "psnr");
+        row.ssim = measure_named(row.measures, "ssim"), row.data_range = measure_named(row.measures, "data_range");
         row.mse_lower = row.mse_upper = no_value;
         row.measured = true;
         if (series->error.members() > 0) add_error(series->error.error(), row);

@@ -27,6 +27,11 @@ private:
 
     bool stopped() const { return control_.stop && control_.stop->load(); }
     Moment at(int frame) const;
+    TimeSpan span_to(int frame) const;  // from the frame before; empty where nothing moves
+    ReferenceSettings truth_settings() const;
+    // A frame's truth, or the oracle instead of it, as `part` of that frame's progress.
+    ReferenceResult render_reference(int frame, const ReferenceSettings& settings, const std::string& truth,
+                                     const ProgressPart& part, RunResults& results) const;
     std::string cell_key(int frame) const;
     // All frames that an earlier run kept; empty unless it kept every one.
     std::vector<std::vector<PlaneImage>> load_cells() const;

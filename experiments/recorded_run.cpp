@@ -2,13 +2,13 @@
 
 #include <cmath>
 #include <fstream>
-#include <limits>
 #include <set>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "experiments/build_facts.h"
+#include "experiments/no_value.h"
 
 namespace plumb {
 namespace {
@@ -21,9 +21,7 @@ std::string key_of(const std::string& scene, const std::string& place, const std
                        method);
 }
 
-double recorded_number(const Json& json) {
-    return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
-}
+double recorded_number(const Json& json) { return json.is_null() ? no_value : json.get<double>(); }
 
 // The same bits, or neither finite: JSON has no infinities.
 bool same(double a, double b) { return a == b || (!std::isfinite(a) && !std::isfinite(b)); }

@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -72,6 +73,9 @@ struct ResultRow {
     double rmse_lower() const;
     double rmse_upper() const;
 };
+
+// NaN where no measure has the name.
+double measure_named(const std::vector<std::pair<std::string, double>>& measures, std::string_view name);
 
 // What the oracle's rows are called: "oracle, 2 layers", "oracle, all in view" for 0.
 std::string oracle_name(int layers);

@@ -21,6 +21,8 @@ Frame reference_of(const Truth& truth) {
     return reference;
 }
 
+}  // namespace
+
 Frame frame_of(const PlaneImage& image) {
     Frame frame(image.image.width(), image.image.height());
     frame.set(image.plane, image.image);
@@ -30,8 +32,6 @@ Frame frame_of(const PlaneImage& image) {
     }
     return frame;
 }
-
-}  // namespace
 
 std::string refusal_of(const ReferencedError& error) {
     const std::string noise = fmt::format("not measured: the truth's noise (RMSE {:.2g}) is too near to the difference",

@@ -10,6 +10,9 @@
 
 namespace plumb {
 
+// The image alone, with its halves where it has them.
+Frame frame_of(const PlaneImage& image);
+
 // Fills what the image and its error say: names, time, measures, interval, regions, and whether the truth is good
 // enough to tell (its noise at most `most_noise` of the squared error). Scene, truth's name and parameters are the
 // caller's. Throws ImageError where shapes differ or no value is finite.

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <iterator>
 #include <tuple>
 
 #include <fmt/format.h>
 
 #include "experiments/method_timing.h"
+#include "experiments/oracle_images.h"
 #include "experiments/row_measurement.h"
 #include "experiments/settling.h"
 #include "scenes/scene_error.h"
@@ -220,31 +222,17 @@ void SceneRun::render_path_tracer_curve(const std::string& plane, RunResults& re
     }
 }
 
-// The truth as rays see it that meet only what layers of the view hold, with the truth's own samples: what both have in
-// common cancels in their difference.
 void SceneRun::render_oracle(const std::string& view, RunResults& results) {
     const auto truths = truths_.find(view);
     if (truths == truths_.end()) return;
-    for (const int layers : experiment_.oracle_layers) {
-        if (stopped()) return;
-        ReferenceSettings settings = full_truth_settings(experiment_, entry_);
-        settings.quantities.planes = experiment_.planes;
-        std::erase_if(settings.quantities.planes,
-                      [&](const std::string& plane) { return !truths->second.full.frame.has("half_a." + plane); });
-        if (settings.quantities.planes.empty()) return;
-        settings.oracle = OracleSettings{view_of(view), layers, entry_.minimum_separation};
-        const std::string name = oracle_name(layers);
-        ReferenceResult result = references_.render(tracer_, scene_, view_of(view), settings,
-                                                    {entry_.scene, view, name}, control_.part.part(1.0, 1.0), results);
-        if (!result.complete) return;
-        for (const std::string& plane : settings.quantities.planes) {
-            PlaneImage& image =
-                images_.emplace_back(PlaneImage{view, plane, name, std::move(result.frame.plane(plane))});
-            image.oracle_layers = layers;
-            image.halves = {std::move(result.frame.plane("half_a." + plane)),
-                            std::move(result.frame.plane("half_b." + plane))};
-        }
-    }
+    const View camera = view_of(view);
+    const auto render = [&](const ReferenceSettings& settings, const std::string& name) {
+        return references_.render(tracer_, scene_, camera, settings, {entry_.scene, view, name},
+                                  control_.part.part(1.0, 1.0), results);
+    };
+    std::ranges::move(oracle_images(experiment_, entry_, view, camera, full_truth_settings(experiment_, entry_),
+                                    truths->second.full.frame, render),
+                      std::back_inserter(images_));
 }
 
 void SceneRun::measure(const PlaneImage& image, RunResults& results) {

@@ -47,8 +47,8 @@ struct Flicker {
 
 // The truth's frame of now needs planes motion, position and depth, the one of before position; both frames of method
 // and truth need `plane`; halves of the truth's count where both truths have them, and halves of the method's beside
-// those. Motion is in pixels, from the place now
-// to the place before. Throws ImageError for missing planes and different shapes.
+// those. Motion is in pixels, from the place now to the place before. Throws ImageError for missing planes and
+// different shapes.
 Flicker flicker(const Frame& method_before, const Frame& truth_before, const Frame& method_now, const Frame& truth_now,
                 std::string_view plane, const FlickerSettings& settings = {});
 

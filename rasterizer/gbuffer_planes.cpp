@@ -105,9 +105,7 @@ bool stores_positions(const Method& method) {
     return method.gbuffer.position == PositionSource::stored && method.gbuffer.source == SourceOfStage::method;
 }
 
-const GlTexture* stored_positions(const PassResources& resources) {
-    return resources.planes.has("camera_position") ? &resources.planes.get("camera_position") : nullptr;
-}
+const GlTexture* stored_positions(const PassResources& resources) { return resources.planes.find("camera_position"); }
 
 ShaderDefines gbuffer_defines(const Method& method) {
     ShaderDefines defines = normal_defines(normal_format_of(method));

@@ -31,10 +31,10 @@ print(json.dumps({'attributes': suite.attrib, 'cases': cases}))
 
 nlohmann::json read_junit(const std::string& text) {
     const TemporaryFolder folder;
-    std::ofstream(folder.path / "report_reader.py") << report_reader;
+    std::ofstream(folder.path / "reader.py") << report_reader;
     std::ofstream(folder.path / "junit.xml") << text;
-    const ProgramRun run = run_shell("python3 " + (folder.path / "report_reader.py").string() + " " +
-                                     (folder.path / "junit.xml").string());
+    const ProgramRun run =
+        run_shell("python3 " + (folder.path / "reader.py").string() + " " + (folder.path / "junit.xml").string());
     EXPECT_EQ(run.exit_code, 0) << run.output << text;
     return nlohmann::json::parse(run.output);
 }

@@ -15,12 +15,12 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
-Method parse_list(const std::string& text, const MethodList& known = builtin_methods()) {
+Method read_method(const std::string& text, const MethodList& known = builtin_methods()) {
     return parse_method(parse_config(text, "m.toml"), "m.toml", known);
 }
 
-std::string list_failure(const std::string& text) {
-    return message_of<ConfigError>([&] { parse_list(text); });
+std::string method_failure(const std::string& text) {
+    return message_of<ConfigError>([&] { read_method(text); });
 }
 
 TEST(MethodFile, BuiltInMethodsDifferInTheirLayersOnly) {
@@ -33,7 +33,7 @@ TEST(MethodFile, BuiltInMethodsDifferInTheirLayersOnly) {
 }
 
 TEST(MethodFile, WhatIsNotSetComesFromTheBase) {
-    const Method method = parse_list("name = \"mine\"\nbase = \"one_layer\"\nao.samples = 50");
+    const Method method = read_method("name = \"mine\"\nbase = \"one_layer\"\nao.samples = 50");
     EXPECT_EQ(method.name, "mine");
     EXPECT_EQ(method.gbuffer.layers, 1);
     EXPECT_EQ(method.ao.samples, 50);
@@ -41,37 +41,37 @@ TEST(MethodFile, WhatIsNotSetComesFromTheBase) {
 }
 
 TEST(MethodFile, AnUnknownBaseIsAnErrorThatNamesTheNearest) {
-    EXPECT_THAT(list_failure("name = \"mine\"\nbase = \"one_layers\""),
+    EXPECT_THAT(method_failure("name = \"mine\"\nbase = \"one_layers\""),
                 AllOf(HasSubstr("m.toml:2"), HasSubstr("did you mean 'one_layer'?")));
 }
 
 TEST(MethodFile, AnUnknownParameterIsAnErrorWithLineAndNearestName) {
-    EXPECT_THAT(list_failure("name = \"mine\"\n[ao]\nsampels = 3"),
+    EXPECT_THAT(method_failure("name = \"mine\"\n[ao]\nsampels = 3"),
                 AllOf(HasSubstr("m.toml:3: ao.sampels"), HasSubstr("did you mean 'ao.samples'?")));
 }
 
 TEST(MethodFile, AnUnknownValueOfAChoiceIsAnErrorThatNamesTheNearest) {
-    EXPECT_THAT(list_failure("name = \"mine\"\nao.estimator = \"mara2014\""),
+    EXPECT_THAT(method_failure("name = \"mine\"\nao.estimator = \"mara2014\""),
                 AllOf(HasSubstr("m.toml:2: ao.estimator"), HasSubstr("did you mean 'mara2016'?")));
 }
 
 TEST(MethodFile, AParameterWithoutEffectIsAnErrorThatSaysWhy) {
-    EXPECT_THAT(list_failure("name = \"mine\"\nao.enabled = false\nao.samples = 3"),
+    EXPECT_THAT(method_failure("name = \"mine\"\nao.enabled = false\nao.samples = 3"),
                 AllOf(HasSubstr("m.toml:3: ao.samples"), HasSubstr("no effect"), HasSubstr("ao.enabled = false")));
-    EXPECT_THAT(list_failure("name = \"mine\"\nbase = \"one_layer\"\ngbuffer.minimum_separation = 0.2"),
+    EXPECT_THAT(method_failure("name = \"mine\"\nbase = \"one_layer\"\ngbuffer.minimum_separation = 0.2"),
                 HasSubstr("gbuffer.layers = 1"));
-    EXPECT_THAT(list_failure("name = \"mine\"\nradiosity.blur.radius = 0\nradiosity.blur.step = 2"),
+    EXPECT_THAT(method_failure("name = \"mine\"\nradiosity.blur.radius = 0\nradiosity.blur.step = 2"),
                 HasSubstr("radiosity.blur.radius = 0"));
-    EXPECT_THAT(list_failure("name = \"mine\"\nao.blur.kind = \"gaussian_2015\"\nao.blur.plane_sharpness = 2.0"),
+    EXPECT_THAT(method_failure("name = \"mine\"\nao.blur.kind = \"gaussian_2015\"\nao.blur.plane_sharpness = 2.0"),
                 HasSubstr("ao.blur.kind is not \"bilateral\""));
-    EXPECT_THAT(list_failure("name = \"mine\"\nao.temporal.layers = 2"), HasSubstr("ao.temporal.alpha = 0"));
-    EXPECT_THAT(list_failure("name = \"mine\"\nradiosity.temporal.vary_taps = false"),
+    EXPECT_THAT(method_failure("name = \"mine\"\nao.temporal.layers = 2"), HasSubstr("ao.temporal.alpha = 0"));
+    EXPECT_THAT(method_failure("name = \"mine\"\nradiosity.temporal.vary_taps = false"),
                 HasSubstr("radiosity.temporal.alpha = 0"));
-    EXPECT_THAT(list_failure("name = \"mine\"\nantialias.clamp = false"), HasSubstr("antialias.temporal = false"));
+    EXPECT_THAT(method_failure("name = \"mine\"\nantialias.clamp = false"), HasSubstr("antialias.temporal = false"));
 }
 
 TEST(MethodFile, MoreLayersThanTheGBufferHoldsIsAnError) {
-    EXPECT_THAT(list_failure("name = \"mine\"\nbase = \"one_layer\"\nao.layers = 2"),
+    EXPECT_THAT(method_failure("name = \"mine\"\nbase = \"one_layer\"\nao.layers = 2"),
                 AllOf(HasSubstr("ao.layers = 2"), HasSubstr("gbuffer.layers = 1")));
 }
 
@@ -122,7 +122,7 @@ TEST(MethodFile, EveryParameterIsPrintedAndComesBack) {
         if (method.gbuffer.layers == 1) method.ao.layers = method.radiosity.layers = 1;  // the only valid combination
         method.name = "changed";
         const std::string text = print_method(method);
-        const Method again = parse_list(text, {});
+        const Method again = read_method(text, {});
         EXPECT_EQ(print_method(again), text) << parameter.name;
         EXPECT_NE(method_hash(method), method_hash(defaults)) << parameter.name;
         EXPECT_EQ(method_hash(method), method_hash(again)) << parameter.name;
