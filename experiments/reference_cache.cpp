@@ -1,13 +1,10 @@
 #include "experiments/reference_cache.h"
 
-#include <algorithm>
 #include <charconv>
 #include <exception>
-#include <optional>
 #include <system_error>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
@@ -16,11 +13,12 @@
 #include "experiments/frame_checksum.h"
 #include "frames/exr.h"
 #include "frames/image_error.h"
+#include "pathtracer/reference_identity.h"
 
 namespace plumb {
 namespace {
 
-constexpr int file_format = 2;  // of the key and the facts below
+constexpr int file_format = 3;  // of the key and the facts below
 
 const std::string& fact(const Frame& frame, const std::string& name) {
     const auto found = frame.facts.find(name);
@@ -51,14 +49,6 @@ ReferenceResult read_reference(const std::filesystem::path& file, const std::str
     return result;
 }
 
-std::string optional_view_key(const std::optional<View>& view) { return view ? view_key(*view) : "none"; }
-
-std::string oracle_key(const std::optional<OracleSettings>& oracle) {
-    if (!oracle) return "none";
-    return fmt::format("{} layers {:a} apart of {}", oracle->layers, oracle->minimum_separation,
-                       view_key(oracle->view));
-}
-
 void write_reference(const std::filesystem::path& file, const std::string& key, const ReferenceResult& result) {
     Frame frame = result.frame;
     frame.facts["reference.key"] = key;
@@ -71,42 +61,12 @@ void write_reference(const std::filesystem::path& file, const std::string& key, 
 
 }  // namespace
 
-// Hexadecimal floats: two cameras that differ in the last bit are two cameras.
-std::string view_key(const View& view) {
-    const Camera& camera = view.camera();
-    std::string text = "camera";
-    for (int column = 0; column < 4; ++column) {
-        for (int row = 0; row < 4; ++row) text += fmt::format(" {:a}", camera.world_from_camera[column][row]);
-    }
-    // The width that is seen tells views with a guard band apart.
-    text += fmt::format(" sees {:a} {:a} near {:a} far {:a} aperture {:a} focus {:a} size {}x{}", view.tan_half().x,
-                        view.tan_half().y, camera.near_plane, camera.far_plane, camera.aperture_radius,
-                        camera.focus_distance, view.width(), view.height());
-    if (view.offset() != glm::vec2(0.0f)) text += fmt::format(" offset {:a} {:a}", view.offset().x, view.offset().y);
-    return text;
-}
-
 std::string reference_key(const Scene& scene, const View& view, const ReferenceSettings& settings,
                           const TimeSpan& span) {
-    const Quantities& quantities = settings.quantities;
-    std::vector<std::string> planes = quantities.planes;
-    std::ranges::sort(planes);
-    std::string key = fmt::format("format {}; integrator {}; scene {:016x}; time {:a} to {:a}; {}; previous {}",
-                                  file_format, build_facts().integrator_hash, scene.content_hash(), span.begin,
-                                  span.end, view_key(view), optional_view_key(settings.previous_view));
-    key += fmt::format("; planes {}; ao_radius {:a}; ao_falloff {}; bounces {}; indirect_radius {:a} {}",
-                       fmt::join(planes, ","), quantities.ao_radius, to_string(quantities.ao_falloff),
-                       quantities.bounces, quantities.indirect_radius, to_string(quantities.indirect_falloff));
-    key += fmt::format("; reflection_radius {:a} {}", quantities.reflection_radius,
-                       to_string(quantities.reflection_falloff));
-    key += fmt::format("; samples {} to {}; target_error {:a}; seed {}; minimum_separation {:a}; antialias {}",
-                       settings.first_sample, settings.samples, settings.target_error, settings.seed,
-                       settings.minimum_separation, settings.antialias);
-    key += fmt::format("; emitter_sampling {}; points {}; roulette_after {}; oracle {}; shutter opens at {}",
-                       static_cast<int>(settings.emitter_sampling), static_cast<int>(settings.points),
-                       settings.roulette_after, oracle_key(settings.oracle),
-                       optional_view_key(settings.view_at_shutter_opening));
-    return key;
+    return fmt::format("format {}; integrator {}; scene {:016x}; {}; samples {} to {}; target_error {:a}; {}",
+                       file_format, build_facts().integrator_hash, scene.content_hash(), view_identity(view),
+                       settings.first_sample, settings.samples, settings.target_error,
+                       sampling_identity(settings, span));
 }
 
 ReferenceCache::ReferenceCache(std::filesystem::path folder) : folder_(std::move(folder)) {}

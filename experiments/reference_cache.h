@@ -16,9 +16,6 @@
 
 namespace plumb {
 
-// All that decides which rays belong to which pixels.
-std::string view_key(const View& view);
-
 // `span` is the path tracer's.
 std::string reference_key(const Scene& scene, const View& view, const ReferenceSettings& settings,
                           const TimeSpan& span = {});

@@ -28,10 +28,6 @@ namespace {
 constexpr std::string_view fact_prefix = exr_fact_prefix;
 constexpr std::size_t longest_name = longest_exr_name;
 
-[[noreturn]] void cannot_read(const std::filesystem::path& path, std::string_view reason) {
-    throw ImageError(fmt::format("cannot read '{}': {}", path.string(), reason));
-}
-
 Imf::Header make_header(const std::filesystem::path& path, const Frame& frame) {
     Imf::Header header(frame.width(), frame.height());
     header.compression() = Imf::ZIP_COMPRESSION;

@@ -1,6 +1,10 @@
 #pragma once
 
+#include <filesystem>
 #include <stdexcept>
+#include <string_view>
+
+#include <fmt/format.h>
 
 namespace plumb {
 
@@ -9,5 +13,9 @@ class ImageError : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;
 };
+
+[[noreturn]] inline void cannot_read(const std::filesystem::path& path, std::string_view reason) {
+    throw ImageError(fmt::format("cannot read '{}': {}", path.string(), reason));
+}
 
 }  // namespace plumb

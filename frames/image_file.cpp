@@ -15,10 +15,6 @@
 namespace plumb {
 namespace {
 
-[[noreturn]] void cannot_read(const std::filesystem::path& path, std::string_view reason) {
-    throw ImageError(fmt::format("cannot read '{}': {}", path.string(), reason));
-}
-
 bool is_exr(const std::filesystem::path& path) {
     std::FILE* file = std::fopen(path.c_str(), "rb");
     if (!file) return false;

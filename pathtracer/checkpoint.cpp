@@ -1,6 +1,5 @@
 #include "pathtracer/checkpoint.h"
 
-#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdio>
@@ -16,12 +15,13 @@
 
 #include "frames/atomic_file.h"
 #include "pathtracer/reference_error.h"
+#include "pathtracer/reference_identity.h"
 
 namespace plumb {
 namespace {
 
 constexpr std::array<char, 8> magic = {'P', 'L', 'U', 'M', 'B', 'R', 'E', 'F'};
-constexpr std::uint32_t format_version = 4;  // also of the samples that the sums are made of
+constexpr std::uint32_t format_version = 5;  // also of the samples that the sums are made of
 
 // As it lies in the file; the sums follow, then the checksum of all before it. Little-endian, as all machines we build
 // on.
@@ -42,57 +42,13 @@ std::uint64_t checksum(const Header& header, std::span<const double> sums) {
     return XXH3_64bits_withSeed(sums.data(), sums.size_bytes(), of_header);
 }
 
-template <typename T>
-void append(std::string& bytes, const T& value) {
-    static_assert(std::is_arithmetic_v<T> || std::is_enum_v<T>);
-    bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
-}
-
-void append_view(std::string& bytes, const View& view) {
-    for (int column = 0; column < 4; ++column) {
-        for (int row = 0; row < 4; ++row) append(bytes, view.camera().world_from_camera[column][row]);
-    }
-    append(bytes, view.tan_half().x), append(bytes, view.tan_half().y);
-    append(bytes, view.camera().aperture_radius), append(bytes, view.camera().focus_distance);
-    append(bytes, view.camera().near_plane), append(bytes, view.camera().far_plane);
-    append(bytes, view.width()), append(bytes, view.height());
-    if (view.offset() != glm::vec2(0.0f)) append(bytes, view.offset().x), append(bytes, view.offset().y);
-}
-
 std::uint64_t hash(const std::string& bytes) { return XXH3_64bits(bytes.data(), bytes.size()); }
 
 }  // namespace
 
 CheckpointKey CheckpointKey::of(const Scene& scene, const TimeSpan& span, const View& view,
                                 const ReferenceSettings& settings) {
-    CheckpointKey key;
-    key.scene = scene.content_hash();
-    std::string bytes;
-    append_view(bytes, view);
-    key.view = hash(bytes);
-
-    bytes.clear();
-    append(bytes, span.begin), append(bytes, span.end);
-    const Quantities& quantities = settings.quantities;
-    // Sums know no order of planes.
-    std::vector<std::string> planes = quantities.planes;
-    std::ranges::sort(planes);
-    for (const std::string& plane : planes) bytes += plane + '\n';
-    append(bytes, quantities.ao_radius), append(bytes, quantities.ao_falloff);
-    append(bytes, quantities.bounces), append(bytes, quantities.indirect_radius);
-    append(bytes, quantities.indirect_falloff);
-    append(bytes, quantities.reflection_radius), append(bytes, quantities.reflection_falloff);
-    append(bytes, settings.seed), append(bytes, settings.minimum_separation), append(bytes, settings.antialias);
-    append(bytes, settings.emitter_sampling), append(bytes, settings.points), append(bytes, settings.roulette_after);
-    if (settings.oracle) {
-        append_view(bytes, settings.oracle->view);
-        append(bytes, settings.oracle->layers), append(bytes, settings.oracle->minimum_separation);
-    }
-    bytes += settings.view_at_shutter_opening ? "shutter" : "";
-    if (settings.view_at_shutter_opening) append_view(bytes, *settings.view_at_shutter_opening);
-    if (settings.previous_view) append_view(bytes, *settings.previous_view);
-    key.settings = hash(bytes);
-    return key;
+    return {scene.content_hash(), hash(view_identity(view)), hash(sampling_identity(settings, span))};
 }
 
 void write_checkpoint(const std::filesystem::path& path, const CheckpointKey& key, const CheckpointState& state,

@@ -43,6 +43,7 @@ struct VectorLanes {
 
     PLUMBLINE_INLINE glm::vec3 get(int lane) const { return {x[lane], y[lane], z[lane]}; }
     PLUMBLINE_INLINE void set(int lane, const glm::vec3& v) { x[lane] = v.x, y[lane] = v.y, z[lane] = v.z; }
+    PLUMBLINE_INLINE void add(int lane, const glm::vec3& v) { x[lane] += v.x, y[lane] += v.y, z[lane] += v.z; }
 
     PLUMBLINE_INLINE void fill(int begin, int end, const glm::vec3& v) {
         x.fill(begin, end, v.x), y.fill(begin, end, v.y), z.fill(begin, end, v.z);

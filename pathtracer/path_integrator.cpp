@@ -5,22 +5,10 @@
 #include <glm/gtc/constants.hpp>
 
 #include "pathtracer/direction_sampling.h"
+#include "pathtracer/path_dimensions.h"
 
 namespace plumb {
 namespace {
-
-// Dimensions of the sequence that vertex k uses; the first ones choose the primary ray. Paths that start with the
-// specular lobe have their own.
-enum Use : std::uint32_t { extended_light, other_light, next_direction, lobe_pick, roulette, pane_pick };
-constexpr std::uint32_t uses_per_vertex = 8, primary_uses = 4, specular_paths = 1u << 16, panes_apart = 1u << 20;
-constexpr std::uint32_t dimension(int vertex, bool from_specular_start, Use use) {
-    return primary_uses + uses_per_vertex * static_cast<std::uint32_t>(vertex) + use +
-           (from_specular_start ? specular_paths : 0u);
-}
-
-void add_to(VectorLanes& sum, int lane, const glm::vec3& value) {
-    sum.x[lane] += value.x, sum.y[lane] += value.y, sum.z[lane] += value.z;
-}
 
 float largest(const glm::vec3& v) { return std::max(v.x, std::max(v.y, v.z)); }
 
@@ -90,111 +78,9 @@ Scattering PathIntegrator::scattering(const VertexBatch& vertices, int lane, int
     return {here, normal, glm::vec3(0.0f), specular, here.surface.transmission * (1.0f - specular)};
 }
 
-// Adds to `sum` what reaches each vertex from one sampled light with an extent and from one without.
-void PathIntegrator::next_event(const VertexBatch& vertices, int vertex, Start start, PathWorkspace& workspace,
-                                VectorLanes& sum, int& rays) const {
-    const bool specular_start = start == Start::specular;
-    LightLanes& lights = workspace.lights;
-    if (lights_.has_extended_lights()) {
-        Lanes<std::uint32_t> x;
-        Lanes<float> y;
-        sample_points(vertices.samples, vertices.count, dimension(vertex, specular_start, extended_light), x, y);
-        lights_.sample_extended(vertices, x, y, lights);
-        connect(vertices, vertex, start, lights, workspace.shadow, sum, rays);
-    }
-    const bool exact_already = vertex == 0 && !specular_start && plan_.exact_lights_at_first_point;
-    if (lights_.lights_without_extent() > 0 && !exact_already) {
-        Lanes<float> pick;
-        sample_numbers(vertices.samples, vertices.count, dimension(vertex, specular_start, other_light), pick);
-        for (int i = 0; i < vertices.count; ++i) {
-            lights.set(i, lights_.sample_without_extent(
-                              {vertices.ray_origin.get(i), vertices.shading_normal.get(i), vertices.time[i]}, pick[i]));
-        }
-        connect(vertices, vertex, start, lights, workspace.shadow, sum, rays);
-    }
-}
-
-// Adds to `sum` what each vertex makes of its light sample, where the way to the light is open.
-void PathIntegrator::connect(const VertexBatch& vertices, int vertex, Start start, const LightLanes& lights,
-                             ShadowRays& shadow, VectorLanes& sum, int& rays) const {
-    const bool leaves_diffusely = vertex == 0 && start == Start::diffuse;
-    const float others_compete = lights_.rays_find_emitters() ? 1.0f : 0.0f;
-    VectorLanes brought;
-    Lanes<float> brings;
-    for (int i = 0; i < whole_groups(vertices.count); ++i) {
-        const glm::vec3 direction = lights.direction.get(i);
-        // Light from behind the triangle is stopped by the triangle itself, whatever the interpolated normal says.
-        const float cosine = std::max(0.0f, glm::dot(vertices.shading_normal.get(i), direction));
-        const float open = glm::dot(vertices.geometric_normal.get(i), direction) > 0.0f ? 1.0f : 0.0f;
-        const float density = cosine * glm::one_over_pi<float>();
-        // A light that nothing else finds has no density, and then the weight is 1.
-        const float other = lights.density[i] > 0.0f ? others_compete * density / lights.density[i] : 0.0f;
-        const float scale = open * density / (1.0f + other * other);
-        const glm::vec3 albedo = leaves_diffusely ? glm::vec3(1.0f) : vertices.albedo.get(i);
-        const glm::vec3 light = vertices.throughput.get(i) * albedo * lights.radiance.get(i) * scale;
-        brought.set(i, light);
-        brings[i] = light.x + light.y + light.z;
-    }
-    for (int i = 0; i < vertices.count && !leaves_diffusely && !vertices.all_plain; ++i) {
-        if (vertices.is_plain[i]) continue;
-        const glm::vec3 direction = lights.direction.get(i);
-        const SpecularLobeValue value = scattering(vertices, i, vertex).evaluate(direction);
-        const bool competes = others_compete > 0.0f && lights.density[i] > 0.0f;
-        const float weight = competes ? power_heuristic(lights.density[i], value.density) : 1.0f;
-        const bool open = glm::dot(vertices.geometric_normal.get(i), direction) > 0.0f;
-        float scale = open ? weight : 0.0f;
-        if (start == Start::specular && is_limited(start, vertex)) {
-            scale *= counted(start, lights.farthest[i] * glm::length(lights.shadow_ray.get(i)));
-        }
-        brought.set(i, vertices.throughput.get(i) * value.reflected * lights.radiance.get(i) * scale);
-        brings[i] = brought.x[i] + brought.y[i] + brought.z[i];
-    }
-    // Whether light arrives at all is anybody's guess, also the processor's: each ray is set, and the next one takes
-    // its place where it brings nothing.
-    RayBatch& shadow_rays = shadow.rays;
-    int count = 0;
-    for (int i = 0; i < vertices.count; ++i) {
-        shadow.vertex[count] = i;
-        shadow_rays.set(count, vertices.ray_origin.get(i), lights.shadow_ray.get(i), lights.farthest[i],
-                        vertices.time[i]);
-        count += brings[i] > 0.0f ? 1 : 0;
-    }
-    shadow_rays.count = count;
-    rays += count;
-    VectorLanes passing;
-    scene_.transmittance(shadow_rays, passing);
-    for (int i = 0; i < count; ++i) {
-        const int lane = shadow.vertex[i];
-        add_to(sum, vertices.path[lane], brought.get(lane) * passing.get(i));
-    }
-}
-
 float PathIntegrator::counted(Start start, float distance) const {
     return start == Start::diffuse ? evaluate_falloff(plan_.indirect_falloff, distance, plan_.indirect_radius)
                                    : evaluate_falloff(plan_.reflection_falloff, distance, plan_.reflection_radius);
-}
-
-glm::vec3 PathIntegrator::exact_direct(const SurfacePoint& x, std::uint64_t& rays) const {
-    glm::vec3 sum(0.0f);
-    for (std::size_t first = 0; first < lights_.lights_without_extent(); first += most_lanes) {
-        RayBatch shadow_rays;
-        VectorLanes light, passing;
-        const std::size_t end = std::min(first + most_lanes, lights_.lights_without_extent());
-        for (std::size_t i = first; i < end; ++i) {
-            const LightSample sample = lights_.light_without_extent(i, x.ray_origin);
-            const float cosine = glm::dot(x.shading_normal, sample.direction);
-            if (sample.radiance == glm::vec3(0.0f) || cosine <= 0.0f ||
-                glm::dot(x.geometric_normal, sample.direction) <= 0.0f) {
-                continue;
-            }
-            light.set(shadow_rays.count, sample.radiance * (cosine * glm::one_over_pi<float>()));
-            shadow_rays.add(x.ray_origin, sample.shadow_ray, sample.farthest, now);
-        }
-        rays += static_cast<std::uint64_t>(shadow_rays.count);
-        scene_.transmittance(shadow_rays, passing);
-        for (int i = 0; i < shadow_rays.count; ++i) sum += light.get(i) * passing.get(i);
-    }
-    return sum;
 }
 
 // Draws the direction in which each path leaves its vertex.
@@ -202,7 +88,8 @@ void PathIntegrator::scatter(const VertexBatch& vertices, int vertex, Start star
     const bool specular_start = start == Start::specular, leaves_diffusely = vertex == 0 && !specular_start;
     Lanes<float> x, y;
     Lanes<int> leaves;
-    sample_points(vertices.samples, vertices.count, dimension(vertex, specular_start, next_direction), x, y);
+    sample_points(vertices.samples, vertices.count, path_dimension(vertex, specular_start, VertexUse::next_direction),
+                  x, y);
     RayBatch& rays = scattered.rays;
     const int count = vertices.count, end = whole_groups(count);
     for (int i = 0; i < end; ++i) {
@@ -237,7 +124,7 @@ void PathIntegrator::scatter(const VertexBatch& vertices, int vertex, Start star
             continue;
         }
         const SampleIndex index = vertices.samples.get(i);
-        const float pick = sobol_point(index, mix_word(dimension(vertex, specular_start, lobe_pick))).x;
+        const float pick = sobol_point(index, mix_word(path_dimension(vertex, specular_start, VertexUse::lobe_pick))).x;
         const ScatterSample sample = scattering(vertices, i, vertex).sample(pick, {x[i], y[i]});
         const bool outwards = glm::dot(vertices.geometric_normal.get(i), sample.direction) > 0.0f;
         if ((!outwards && !sample.passes) || sample.weight == glm::vec3(0.0f)) continue;
@@ -262,7 +149,7 @@ void PathIntegrator::pass_panes(const VertexBatch& vertices, int vertex, Start s
             const float glowing = point.emission != glm::vec3(0.0f) ? largest(passing) : 0.0f;
             const float ending = std::max(glowing, largest(point.albedo * (1.0f - specular) + specular));
             const float share = largest(passing) / (largest(passing) + ending);
-            const std::uint32_t use = dimension(vertex, start == Start::specular, pane_pick) + pane * panes_apart;
+            const std::uint32_t use = path_dimension(vertex, start == Start::specular, VertexUse::pane_pick, pane);
             const glm::vec3 weight = scattered.weight.get(i);
             if (sobol_point(index, mix_word(use)).x >= share) {
                 scattered.weight.set(i, weight / (1.0f - share));
@@ -282,7 +169,7 @@ bool PathIntegrator::survives_roulette(const SampleIndex& sample, int vertex, St
                                        glm::vec3& throughput) const {
     if (plan_.roulette_after == 0 || vertex <= plan_.roulette_after) return true;
     const float probability = std::min(1.0f, largest(throughput));
-    const std::uint32_t use = dimension(vertex, start == Start::specular, roulette);
+    const std::uint32_t use = path_dimension(vertex, start == Start::specular, VertexUse::roulette);
     if (sobol_point(sample, mix_word(use)).x >= probability) return false;
     throughput /= probability;
     return true;
@@ -315,7 +202,7 @@ void PathIntegrator::arrive(const VertexBatch& from, int vertex, Start start, bo
                                                      scattered.density[i], rays.time[i]);
         // What a diffuse lobe gets straight from an emitter is direct light, which knows no radius.
         const float reached = start == Start::specular ? counts(j) : 1.0f;
-        add_to(sum, next.path[j], next.throughput.get(j) * emission * (weight * reached));
+        sum.add(next.path[j], next.throughput.get(j) * emission * (weight * reached));
     }
     const bool goes_on = vertex < plan_.bounces && (start == Start::specular || plan_.indirect);
     if (!goes_on) return;
@@ -372,7 +259,7 @@ void PathIntegrator::follow(const VertexBatch& starts, Start start, PathWorkspac
         const auto gather_background = [&](int i) {
             const glm::vec3 found = lights_.weighted_background(rays.direction.get(i), scattered.density[i]);
             if (found == glm::vec3(0.0f)) return;
-            add_to(sum, path_of(i), vertices->throughput.get(scattered.vertex[i]) * scattered.weight.get(i) * found);
+            sum.add(path_of(i), vertices->throughput.get(scattered.vertex[i]) * scattered.weight.get(i) * found);
         };
 
         // Where only the fact of a hit matters, the cheaper query does.

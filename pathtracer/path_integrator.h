@@ -38,8 +38,8 @@ struct EstimationPlan {
 
 class PathIntegrator {
 public:
-    // `layers`: what rays that look for surfaces
-    // may meet (all: null); the way from a surface to a light is always that of the whole scene.
+    // `layers`: what rays that look for surfaces may meet (all: null); the way from a surface to a light is always that
+    // of the whole scene.
     PathIntegrator(const TracedScene& scene, const LightTable& lights, const OracleLayers* layers,
                    const EstimationPlan& plan)
         : scene_(scene), lights_(lights), layers_(layers), plan_(plan) {}
@@ -58,9 +58,6 @@ public:
 
     // The part of `direct` that lights without extent give, as if x's albedo were 1; deterministic. Counts rays.
     glm::vec3 exact_direct(const SurfacePoint& x, std::uint64_t& rays) const;
-
-    // The dimensions of the sequence that choose a primary ray.
-    static constexpr std::uint32_t pixel_dimension = 0, lens_dimension = 1, time_dimension = 2;
 
 private:
     enum class Start { diffuse, specular };

@@ -253,62 +253,59 @@ SurfacePoint TracedScene::surface_point(const SurfaceHit& hit, const glm::vec3& 
     return point;
 }
 
-// The corners of triangles that were hit, and the sums of their normals at the points.
+// The corners of triangles that were hit, and what is interpolated between them.
 struct CornerLanes {
     VectorLanes a, b, c, normal_sum;
+    Lanes<float> texture_u, texture_v;  // where the scene has textures
 };
 
-// Starts to fetch the vertices of the triangles that were hit, in two rounds: hardly any of them is in a nearby cache.
-void TracedScene::fetch_corners(const HitBatch& hits, const MetRays& met) const {
-    Lanes<const std::uint32_t*> triangles;
-    for (int i = 0; i < met.count; ++i) {
-        const int ray = met.ray[i];
-        triangles[i] = parts_[hits.instance[ray]].triangles + 3 * std::size_t{hits.triangle[ray]};
-        __builtin_prefetch(triangles[i]);
-    }
-    for (int i = 0; i < met.count; ++i) {
-        const Part& part = parts_[hits.instance[met.ray[i]]];
-        for (int k = 0; k < 3; ++k) {
-            const std::uint32_t vertex = triangles[i][k];
-            __builtin_prefetch(&part.positions[vertex]), __builtin_prefetch(&part.normals[vertex]);
-            if (part.has_textures && part.uvs) __builtin_prefetch(&(*part.uvs)[vertex]);
-        }
-    }
-}
-
-// Where nothing moves, vertices are found by their numbers alone. Lanes do not depend on each other.
+// Where nothing moves. Two rounds: the first starts to fetch the triangles, for hardly any of them is in a nearby
+// cache. Lanes do not depend on each other.
 void TracedScene::gather_corners(const HitBatch& hits, const MetRays& met, CornerLanes& corners) const {
-    const int *first_triangle = table_.first_triangle.data(), *first_vertex = table_.first_vertex.data();
-    const std::uint32_t* triangles = triangles_.data();
-    const float *positions = &positions_.data()->x, *normals = &normals_.data()->x;
-    fetch_corners(hits, met);
+    constexpr int floats = sizeof(TriangleRecord) / sizeof(float);
+    const int* first_triangle = table_.first_triangle.data();
+    const float* records = &records_.data()->positions[0].x;
+    Lanes<int> record;
+    for (int i = 0; i < whole_groups(met.count); ++i) {
+        const int ray = met.ray[i];
+        record[i] = floats * (first_triangle[hits.instance[ray]] + static_cast<int>(hits.triangle[ray]));
+        __builtin_prefetch(records + record[i]), __builtin_prefetch(records + record[i] + floats - 1);
+    }
     PLUMBLINE_INDEPENDENT_LANES
     for (int i = 0; i < whole_groups(met.count); ++i) {
         const int ray = met.ray[i];
-        const auto instance = static_cast<int>(hits.instance[ray]);
-        const int triangle = 3 * (first_triangle[instance] + static_cast<int>(hits.triangle[ray]));
-        const int a = 3 * (first_vertex[instance] + static_cast<int>(triangles[triangle])),
-                  b = 3 * (first_vertex[instance] + static_cast<int>(triangles[triangle + 1])),
-                  c = 3 * (first_vertex[instance] + static_cast<int>(triangles[triangle + 2]));
         const float u = hits.u[ray], v = hits.v[ray], w = 1.0f - u - v;
-        const auto at = [](const float* from, int first) {
-            return glm::vec3(from[first], from[first + 1], from[first + 2]);
-        };
-        corners.a.set(i, at(positions, a)), corners.b.set(i, at(positions, b)), corners.c.set(i, at(positions, c));
-        corners.normal_sum.set(i, w * at(normals, a) + u * at(normals, b) + v * at(normals, c));
+        const float* from = records + record[i];
+        const auto at = [from](int first) { return glm::vec3(from[first], from[first + 1], from[first + 2]); };
+        corners.a.set(i, at(0)), corners.b.set(i, at(3)), corners.c.set(i, at(6));
+        corners.normal_sum.set(i, w * at(9) + u * at(12) + v * at(15));
+        corners.texture_u[i] = w * from[18] + u * from[20] + v * from[22];
+        corners.texture_v[i] = w * from[19] + u * from[21] + v * from[23];
+    }
+}
+
+void TracedScene::gather_moving_corners(const RayBatch& rays, const HitBatch& hits, const MetRays& met,
+                                        CornerLanes& corners) const {
+    for (int i = 0; i < whole_groups(met.count); ++i) {
+        const int ray = met.ray[i];
+        const SurfaceHit hit = hits.get(ray);
+        const Part& part = parts_[hit.instance];
+        TracedTriangle triangle;
+        part.corners(hit.triangle, rays.time[ray], triangle);
+        corners.a.set(i, triangle.a), corners.b.set(i, triangle.b), corners.c.set(i, triangle.c);
+        corners.normal_sum.set(i, part.normal_sum(hit.triangle, hit.u, hit.v, rays.time[ray]));
+        const glm::vec2 uv = part.uv(hit.triangle, hit.u, hit.v);
+        corners.texture_u[i] = uv.x, corners.texture_v[i] = uv.y;
     }
 }
 
 // Two rounds: the first starts to fetch the texels of all points, for hardly any of them is in a cache.
-void TracedScene::look_up_textures(const HitBatch& hits, const MetRays& met, const Lanes<float>& lit,
-                                   SurfaceLanes& points) const {
-    Lanes<float> u, v;
+void TracedScene::look_up_textures(const HitBatch& hits, const MetRays& met, const CornerLanes& corners,
+                                   const Lanes<float>& lit, SurfaceLanes& points) const {
     for (int i = 0; i < met.count; ++i) {
-        const SurfaceHit hit = hits.get(met.ray[i]);
-        const Part& part = parts_[hit.instance];
+        const Part& part = parts_[hits.instance[met.ray[i]]];
         if (!part.has_textures) continue;
-        const glm::vec2 uv = part.uv(hit.triangle, hit.u, hit.v);
-        u[i] = uv.x, v[i] = uv.y;
+        const glm::vec2 uv(corners.texture_u[i], corners.texture_v[i]);
         const Material& material = *part.material;
         for (const int texture :
              {material.base_colour_texture, material.metallic_roughness_texture, material.emission_texture}) {
@@ -318,7 +315,7 @@ void TracedScene::look_up_textures(const HitBatch& hits, const MetRays& met, con
     for (int i = 0; i < met.count; ++i) {
         const Part& part = parts_[hits.instance[met.ray[i]]];
         if (!part.has_textures) continue;
-        const SurfaceSample sample = scene_.surface(*part.material, {u[i], v[i]});
+        const SurfaceSample sample = scene_.surface(*part.material, {corners.texture_u[i], corners.texture_v[i]});
         points.albedo.set(i, lit[i] * sample.albedo), points.emission.set(i, lit[i] * sample.emission);
     }
 }
@@ -326,18 +323,10 @@ void TracedScene::look_up_textures(const HitBatch& hits, const MetRays& met, con
 void TracedScene::surface_points(const RayBatch& rays, const HitBatch& hits, const MetRays& met,
                                  SurfaceLanes& points) const {
     CornerLanes corners;
-    if (!anything_moves_) {
-        gather_corners(hits, met, corners);
+    if (anything_moves_) {
+        gather_moving_corners(rays, hits, met, corners);
     } else {
-        for (int i = 0; i < whole_groups(met.count); ++i) {
-            const int ray = met.ray[i];
-            const SurfaceHit hit = hits.get(ray);
-            const Part& part = parts_[hit.instance];
-            TracedTriangle triangle;
-            part.corners(hit.triangle, rays.time[ray], triangle);
-            corners.a.set(i, triangle.a), corners.b.set(i, triangle.b), corners.c.set(i, triangle.c);
-            corners.normal_sum.set(i, part.normal_sum(hit.triangle, hit.u, hit.v, rays.time[ray]));
-        }
+        gather_corners(hits, met, corners);
     }
     Lanes<float> lit;
     const float *back_is_lit = table_.back_is_lit.data(), *albedos = &table_.albedo.data()->x,
@@ -360,7 +349,7 @@ void TracedScene::surface_points(const RayBatch& rays, const HitBatch& hits, con
         points.albedo.set(i, lit[i] * at(albedos));
         points.emission.set(i, lit[i] * at(emissions));
     }
-    if (has_textures_) look_up_textures(hits, met, lit, points);
+    if (has_textures_) look_up_textures(hits, met, corners, lit, points);
 }
 
 glm::vec3 TracedScene::specular_albedo(const SpecularSurface& surface, const glm::vec3& shading_normal,

@@ -66,6 +66,7 @@ TracedScene::TracedScene(const Scene& scene, const TimeSpan& span)
     reserve(span);
     for (std::uint32_t i = 0; i < parts_.size(); ++i) add(i, span);
     for (std::uint32_t i = 0; i < parts_.size(); ++i) attach(i);
+    if (!anything_moves_) make_records();
     if (has_specular_lobes_) specular_albedo_.emplace();
     rtcCommitScene(embree_scene_);
     check_embree(device_, scene_, "building its tree");
@@ -92,8 +93,8 @@ void TracedScene::reserve(const TimeSpan& span) {
         vertices += mesh.positions.size() * static_cast<std::size_t>(steps_of(instance, span));
         triangles += mesh.triangles.size();
     }
-    // Coordinates are numbered by int.
-    constexpr std::size_t most = std::numeric_limits<int>::max() / 3;
+    // The floats of records are numbered by int.
+    constexpr std::size_t most = std::numeric_limits<int>::max() / (sizeof(TriangleRecord) / sizeof(float));
     if (vertices > most || triangles > most) {
         throw ReferenceError(
             fmt::format("scene '{}': {} vertices and {} triangles in all instances; references take at "
@@ -143,7 +144,6 @@ void TracedScene::add(std::uint32_t index, const TimeSpan& span) {
     has_delta_lobes_ |= may_be_mirror || part.material->is_transparent();
     if (!part.has_textures) part.constant = scene_.surface(*part.material, {});
 
-    table_.first_vertex.push_back(static_cast<int>(positions_.size()));
     table_.first_triangle.push_back(static_cast<int>(triangles_.size() / 3));
     table_.back_is_lit.push_back(part.material->two_sided ? 1.0f : 0.0f);
     table_.albedo.push_back(part.constant.albedo);
@@ -180,6 +180,20 @@ void TracedScene::attach(std::uint32_t index) {
     rtcCommitGeometry(geometry);
     rtcAttachGeometryByID(embree_scene_, geometry, index);
     rtcReleaseGeometry(geometry);
+}
+
+void TracedScene::make_records() {
+    records_.reserve(triangles_.size() / 3);
+    for (const Part& part : parts_) {
+        for (std::size_t first = 0; first < 3 * std::size_t{part.triangle_count}; first += 3) {
+            TriangleRecord& record = records_.emplace_back();
+            for (std::size_t k = 0; k < 3; ++k) {
+                const std::uint32_t vertex = part.triangles[first + k];
+                record.positions[k] = part.positions[vertex], record.normals[k] = part.normals[vertex];
+                record.uvs[k] = part.uvs ? (*part.uvs)[vertex] : glm::vec2(0.0f);
+            }
+        }
+    }
 }
 
 // The same geometry once more, in a tree whose queries may bring a filter: such queries cost more, also without one.

@@ -2,14 +2,13 @@
 
 #include <cmath>
 
+#include "scenes/finite.h"
 #include "scenes/keyed_curve.h"
 
 namespace plumb {
 namespace {
 
 using KeyTime = BasicKeySpan<double>;
-
-bool finite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 // The turn of a unit quaternion as axis * half angle, the half angle in [0, pi].
 glm::dvec3 logarithm(const glm::dquat& q) {

@@ -12,13 +12,11 @@
 #include <fmt/ranges.h>
 #include <xxhash.h>
 
+#include "scenes/finite.h"
 #include "scenes/scene_error.h"
 
 namespace plumb {
 namespace {
-
-bool finite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
-bool finite(const glm::vec2& v) { return std::isfinite(v.x) && std::isfinite(v.y); }
 
 void check(const Mesh& mesh, std::string_view file) {
     const std::size_t count = mesh.positions.size();

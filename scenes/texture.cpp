@@ -23,6 +23,17 @@ int wrapped(int i, int size, TextureWrap wrap) {
     return i < 0 ? i + size : i >= size ? i - size : i;
 }
 
+// Four channels at once, for this runs for every hit.
+using Rgba [[gnu::vector_size(16)]] = float;
+
+Rgba rgba(const half* texel) {
+#ifdef __F16C__
+    return _mm_cvtph_ps(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(texel)));
+#else
+    return Rgba{texel[0], texel[1], texel[2], texel[3]};
+#endif
+}
+
 }  // namespace
 
 glm::vec4 Texture::sample(glm::vec2 uv) const {
@@ -40,17 +51,10 @@ glm::vec4 Texture::sample(glm::vec2 uv) const {
     const int x1 = wrapped(static_cast<int>(x_floor) + 1, width, wrap_u);
     const int y0 = wrapped(static_cast<int>(y_floor), height, wrap_v);
     const int y1 = wrapped(static_cast<int>(y_floor) + 1, height, wrap_v);
-    const auto texel = [&](int i, int j) {
-        const half* t = &texels[4 * (static_cast<std::size_t>(j) * width + i)];
-#ifdef __F16C__  // all four at once: this runs for every hit
-        glm::vec4 value;
-        _mm_storeu_ps(&value.x, _mm_cvtph_ps(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(t))));
-        return value;
-#else
-        return glm::vec4(t[0], t[1], t[2], t[3]);
-#endif
-    };
-    return glm::mix(glm::mix(texel(x0, y0), texel(x1, y0), fx), glm::mix(texel(x0, y1), texel(x1, y1), fx), fy);
+    const auto texel = [&](int i, int j) { return rgba(&texels[4 * (static_cast<std::size_t>(j) * width + i)]); };
+    const auto mixed = [](Rgba from, Rgba to, float share) { return from * (1.0f - share) + to * share; };
+    const Rgba value = mixed(mixed(texel(x0, y0), texel(x1, y0), fx), mixed(texel(x0, y1), texel(x1, y1), fx), fy);
+    return {value[0], value[1], value[2], value[3]};
 }
 
 }  // namespace plumb

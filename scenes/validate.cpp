@@ -5,14 +5,11 @@
 
 #include <fmt/format.h>
 
+#include "scenes/finite.h"
 #include "scenes/scene_error.h"
 
 namespace plumb {
 namespace {
-
-bool finite(float v) { return std::isfinite(v); }
-bool finite(const glm::vec2& v) { return finite(v.x) && finite(v.y); }
-bool finite(const glm::vec3& v) { return finite(v.x) && finite(v.y) && finite(v.z); }
 
 class Validator {
 public:

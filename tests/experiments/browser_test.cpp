@@ -11,7 +11,7 @@
 #include "frames/exr.h"
 #include "frames/image_file.h"
 #include "tests/experiments/page_sample.h"
-#include "tests/experiments/temporary_folder.h"
+#include "tests/temporary_folder.h"
 
 namespace plumb {
 namespace {

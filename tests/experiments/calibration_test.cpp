@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/experiments/errors.h"
+#include "tests/message_of.h"
 
 namespace plumb {
 namespace {

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/experiments/program.h"
-#include "tests/experiments/temporary_folder.h"
+#include "tests/temporary_folder.h"
 
 namespace plumb {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "experiments/claims_report.h"
 #include "frames/atomic_file.h"
-#include "tests/experiments/errors.h"
-#include "tests/experiments/temporary_folder.h"
+#include "tests/message_of.h"
+#include "tests/temporary_folder.h"
 
 namespace plumb {
 namespace {

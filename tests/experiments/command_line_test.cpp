@@ -9,7 +9,7 @@
 
 #include "frames/exr.h"
 #include "tests/experiments/program.h"
-#include "tests/experiments/temporary_folder.h"
+#include "tests/temporary_folder.h"
 
 namespace plumb {
 namespace {

@@ -12,7 +12,7 @@
 #include "frames/image_error.h"
 #include "scenes/builtin.h"
 #include "tests/experiments/program.h"
-#include "tests/experiments/temporary_folder.h"
+#include "tests/temporary_folder.h"
 
 namespace plumb {
 namespace {

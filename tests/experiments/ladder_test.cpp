@@ -5,8 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/experiments/errors.h"
 #include "tests/experiments/sample_results.h"
+#include "tests/message_of.h"
 
 namespace plumb {
 namespace {

@@ -6,7 +6,7 @@
 #include "experiments/page_data.h"
 #include "frames/image_error.h"
 #include "tests/experiments/page_sample.h"
-#include "tests/experiments/temporary_folder.h"
+#include "tests/temporary_folder.h"
 
 namespace plumb {
 namespace {

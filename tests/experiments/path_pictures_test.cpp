@@ -8,7 +8,7 @@
 #include "frames/image_error.h"
 #include "frames/image_file.h"
 #include "tests/experiments/page_sample.h"
-#include "tests/experiments/temporary_folder.h"
+#include "tests/temporary_folder.h"
 
 namespace plumb {
 namespace {

@@ -10,7 +10,8 @@
 #include <gtest/gtest.h>
 
 #include "tests/experiments/program.h"
-#include "tests/experiments/temporary_folder.h"
+#include "tests/file_size_limit.h"
+#include "tests/temporary_folder.h"
 
 namespace plumb {
 namespace {
@@ -95,6 +96,22 @@ TEST_F(ReferenceSafety, AShardThatCannotGrowLeavesTheOneBefore) {
     EXPECT_EQ(full.exit_code, 2) << full.output;
     EXPECT_THAT(full.output, AllOf(HasSubstr("cornell_front.0-4.shard"), HasSubstr("File too large")));
     EXPECT_TRUE(files() == good) << "files changed, vanished or were left behind";
+}
+
+TEST_F(ReferenceSafety, ACheckpointThatCannotGrowLeavesTheOneBefore) {
+    ASSERT_EQ(signal_plumbline(command(endless), SIGINT).exit_code, 130);
+    const auto good = files();
+    ProgramRun full;
+    {
+        const FileSizeLimit limit(4096);
+        full = signal_plumbline(command(endless), SIGINT);
+    }
+    EXPECT_EQ(full.exit_code, 2) << full.output;
+    EXPECT_THAT(full.output,
+                AllOf(HasSubstr(checkpoint().string()), HasSubstr("File too large"), HasSubstr("choose another path")));
+    EXPECT_TRUE(files() == good) << "files changed, vanished or were left behind";
+    const ProgramRun resumed = signal_plumbline(command(endless), SIGINT);
+    EXPECT_THAT(resumed.output, HasSubstr("the same command resumes"));
 }
 
 TEST_F(ReferenceSafety, AFullDiskLeavesTheLastGoodFrame) {

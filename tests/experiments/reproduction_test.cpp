@@ -16,8 +16,8 @@
 #include "frames/image_error.h"
 #include "frames/picture.h"
 #include "scenes/scene_error.h"
-#include "tests/experiments/errors.h"
-#include "tests/experiments/temporary_folder.h"
+#include "tests/message_of.h"
+#include "tests/temporary_folder.h"
 
 namespace plumb {
 namespace {

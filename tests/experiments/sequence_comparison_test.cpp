@@ -11,7 +11,7 @@
 #include "experiments/image_pairs.h"
 #include "experiments/sequence_report.h"
 #include "frames/image_error.h"
-#include "tests/experiments/temporary_folder.h"
+#include "tests/temporary_folder.h"
 
 namespace plumb {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "experiments/check_file.h"
 #include "experiments/thresholds.h"
-#include "tests/experiments/errors.h"
-#include "tests/experiments/temporary_folder.h"
+#include "tests/message_of.h"
+#include "tests/temporary_folder.h"
 
 namespace plumb {
 namespace {

@@ -7,7 +7,7 @@
 #include "experiments/method_file.h"
 #include "experiments/method_parameters.h"
 #include "tests/experiments/program.h"
-#include "tests/experiments/temporary_folder.h"
+#include "tests/temporary_folder.h"
 
 namespace plumb {
 namespace {

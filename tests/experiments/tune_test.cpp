@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "experiments/method_file.h"
-#include "tests/experiments/errors.h"
+#include "tests/message_of.h"
 
 namespace plumb {
 namespace {

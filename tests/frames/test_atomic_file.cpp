@@ -5,19 +5,19 @@
 #include <vector>
 
 #include <gmock/gmock.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include "frames/atomic_file.h"
 #include "frames/exr.h"
 #include "frames/image_error.h"
-#include "tests/frames/temporary_folder.h"
+#include "tests/file_size_limit.h"
+#include "tests/message_of.h"
+#include "tests/temporary_folder.h"
 
 namespace plumb {
 namespace {
 
-using test::TemporaryFolder;
 using testing::HasSubstr;
 
 std::string text_of(const std::filesystem::path& path) {
@@ -27,15 +27,6 @@ std::string text_of(const std::filesystem::path& path) {
 
 int file_count(const std::filesystem::path& folder) {
     return static_cast<int>(std::distance(std::filesystem::directory_iterator(folder), {}));
-}
-
-std::string message_of(const std::function<void()>& action) {
-    try {
-        action();
-    } catch (const ImageError& error) {
-        return error.what();
-    }
-    return "no ImageError";
 }
 
 TEST(AtomicFile, ReplacesAnExistingFileAndCreatesFolders) {
@@ -58,7 +49,7 @@ TEST(AtomicFile, KeepsTheOldFileWhenTheWriterThrowsMidway) {
                                   }),
                  std::runtime_error);
     EXPECT_EQ(text_of(path), "old");
-    EXPECT_EQ(file_count(folder.path()), 1);
+    EXPECT_EQ(file_count(folder.path), 1);
 }
 
 TEST(AtomicFile, KeepsTheOldFileWhenTheProcessIsKilledMidway) {
@@ -84,7 +75,7 @@ TEST(AtomicFile, NamesPathAndReasonWhereItCannotWrite) {
     const TemporaryFolder folder;
     write_text_atomically(folder / "file.txt", "a file, not a folder");
     const auto below_a_file = folder / "file.txt" / "image.exr";
-    const auto message = message_of([&] { write_text_atomically(below_a_file, "text"); });
+    const auto message = message_of<ImageError>([&] { write_text_atomically(below_a_file, "text"); });
     EXPECT_THAT(message, HasSubstr(below_a_file.string()));
     EXPECT_THAT(message, HasSubstr("Not a directory"));
 }
@@ -92,34 +83,12 @@ TEST(AtomicFile, NamesPathAndReasonWhereItCannotWrite) {
 TEST(AtomicFile, NamesPathAndReasonInAFolderWithoutWritePermission) {
     if (::geteuid() == 0) GTEST_SKIP() << "root may write anywhere";
     const TemporaryFolder folder;
-    std::filesystem::permissions(folder.path(),
-                                 std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
-    const auto message = message_of([&] { write_text_atomically(folder / "file.txt", "text"); });
-    std::filesystem::permissions(folder.path(), std::filesystem::perms::owner_all);
+    std::filesystem::permissions(folder.path, std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
+    const auto message = message_of<ImageError>([&] { write_text_atomically(folder / "file.txt", "text"); });
+    std::filesystem::permissions(folder.path, std::filesystem::perms::owner_all);
     EXPECT_THAT(message, HasSubstr("file.txt"));
     EXPECT_THAT(message, HasSubstr("Permission denied"));
 }
-
-// A limit on the size of files stands in for a full disk.
-class SizeLimit {
-public:
-    explicit SizeLimit(rlim_t bytes) {
-        ::getrlimit(RLIMIT_FSIZE, &before_);
-        handler_ = std::signal(SIGXFSZ, SIG_IGN);
-        const rlimit limit{bytes, before_.rlim_max};
-        ::setrlimit(RLIMIT_FSIZE, &limit);
-    }
-    ~SizeLimit() {
-        ::setrlimit(RLIMIT_FSIZE, &before_);
-        std::signal(SIGXFSZ, handler_);
-    }
-    SizeLimit(const SizeLimit&) = delete;
-    SizeLimit& operator=(const SizeLimit&) = delete;
-
-private:
-    rlimit before_{};
-    void (*handler_)(int) = nullptr;
-};
 
 TEST(AtomicFile, KeepsTheOldImageWhenTheDiskIsFull) {
     const TemporaryFolder folder;
@@ -134,13 +103,13 @@ TEST(AtomicFile, KeepsTheOldImageWhenTheDiskIsFull) {
     for (float& value : noise.values()) value = static_cast<float>(state = state * 1664525u + 1013904223u);
     std::string message;
     {
-        const SizeLimit limit(4096);
-        message = message_of([&] { write_exr(path, frame); });
+        const FileSizeLimit limit(4096);
+        message = message_of<ImageError>([&] { write_exr(path, frame); });
     }
     EXPECT_THAT(message, HasSubstr(path.string()));
     EXPECT_THAT(message, HasSubstr("File too large"));
     EXPECT_EQ(read_exr(path).plane("ao").at(0, 0), 0.5f);
-    EXPECT_EQ(file_count(folder.path()), 1);
+    EXPECT_EQ(file_count(folder.path), 1);
 }
 
 }  // namespace

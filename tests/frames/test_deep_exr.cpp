@@ -13,12 +13,11 @@
 #include "frames/deep_exr.h"
 #include "frames/exr.h"
 #include "frames/image_error.h"
-#include "tests/frames/temporary_folder.h"
+#include "tests/temporary_folder.h"
 
 namespace plumb {
 namespace {
 
-using test::TemporaryFolder;
 using testing::ElementsAre;
 using testing::HasSubstr;
 

@@ -12,12 +12,11 @@
 #include "frames/channel_names.h"
 #include "frames/exr.h"
 #include "frames/image_error.h"
-#include "tests/frames/temporary_folder.h"
+#include "tests/temporary_folder.h"
 
 namespace plumb {
 namespace {
 
-using test::TemporaryFolder;
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -258,7 +257,7 @@ TEST(Exr, RejectsWhatIsNoImageNamingFileAndRemedy) {
     EXPECT_THAT(read_message(folder / "empty.exr"), AllOf(HasSubstr("empty.exr"), HasSubstr("0 bytes")));
     EXPECT_THAT(read_message(folder / "text.exr"), AllOf(HasSubstr("text.exr"), HasSubstr("not an OpenEXR file")));
     EXPECT_THAT(read_message(folder / "header.exr"), AllOf(HasSubstr("header.exr"), HasSubstr("truncated")));
-    EXPECT_THAT(read_message(folder.path()), HasSubstr("not a file"));
+    EXPECT_THAT(read_message(folder.path), HasSubstr("not a file"));
 }
 
 TEST(Exr, EveryTruncationAndEveryDamagedHeaderByteIsAnErrorOrAnImageNeverACrash) {

@@ -16,12 +16,11 @@
 #include "frames/image_error.h"
 #include "frames/image_file.h"
 #include "frames/picture.h"
-#include "tests/frames/temporary_folder.h"
+#include "tests/temporary_folder.h"
 
 namespace plumb {
 namespace {
 
-using test::TemporaryFolder;
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -116,7 +115,7 @@ TEST(ReadFrame, NamesFileAndRemedyForWhatIsNoImage) {
 #endif
         EXPECT_THAT(picture_message(folder / "part.png"), HasSubstr("part.png"));
     }
-    EXPECT_THAT(picture_message(folder.path()), HasSubstr("not a file"));
+    EXPECT_THAT(picture_message(folder.path), HasSubstr("not a file"));
 }
 
 TEST(Picture, RadianceTakesExposureThenTheSrgbCurveAndClampsOnlyHere) {

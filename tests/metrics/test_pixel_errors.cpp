@@ -11,8 +11,8 @@
 #include "frames/image_error.h"
 #include "metrics/error_image.h"
 #include "metrics/pixel_errors.h"
-#include "tests/frames/temporary_folder.h"
 #include "tests/metrics/pattern.h"
+#include "tests/temporary_folder.h"
 
 namespace plumb {
 namespace {
@@ -130,7 +130,7 @@ TEST(PixelErrors, MseAndPsnrAreThoseOfScikitImage) {
 
 TEST(PixelErrors, AgreeWithOiiotool) {
     if (std::system("oiiotool --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "oiiotool is not installed";
-    const test::TemporaryFolder folder;
+    const TemporaryFolder folder;
     Frame a(53, 37), b(53, 37);
     a.set("total", test::pattern(37, 53, true));
     b.set("total", test::pattern(37, 53, false));

@@ -7,7 +7,7 @@
 
 #include "scenes/scene_error.h"
 #include "scenes/validate.h"
-#include "tests/scenes/temporary_folder.h"
+#include "tests/message_of.h"
 
 namespace plumb {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "scenes/camera_path.h"
 #include "scenes/scene_error.h"
-#include "tests/scenes/temporary_folder.h"
+#include "tests/message_of.h"
 
 namespace plumb {
 namespace {

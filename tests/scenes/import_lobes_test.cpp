@@ -5,7 +5,7 @@
 
 #include "scenes/import.h"
 #include "tests/scenes/small_files.h"
-#include "tests/scenes/temporary_folder.h"
+#include "tests/temporary_folder.h"
 
 namespace plumb {
 namespace {

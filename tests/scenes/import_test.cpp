@@ -5,8 +5,9 @@
 #include <gmock/gmock.h>
 
 #include "scenes/scene_error.h"
+#include "tests/message_of.h"
 #include "tests/scenes/small_files.h"
-#include "tests/scenes/temporary_folder.h"
+#include "tests/temporary_folder.h"
 
 namespace plumb {
 namespace {
@@ -158,7 +159,7 @@ TEST(ImportObj, ScalesToMetres) {
     const Scene scene = import_scene_file(folder.write("a.obj", triangle_obj), options);
     EXPECT_FLOAT_EQ(scene.bounds().upper.x, 0.01f);
     options.scale = 0.0f;
-    EXPECT_THAT(failure(folder.path() / "a.obj", options), HasSubstr("scale"));
+    EXPECT_THAT(failure(folder.path / "a.obj", options), HasSubstr("scale"));
 }
 
 TEST(Import, NamesAFileThatIsNotThere) { EXPECT_THAT(failure("nowhere/x.obj"), HasSubstr("nowhere/x.obj")); }

@@ -8,8 +8,9 @@
 #include "scenes/builtin.h"
 #include "scenes/effects.h"
 #include "scenes/scene_error.h"
+#include "tests/message_of.h"
 #include "tests/scenes/small_files.h"
-#include "tests/scenes/temporary_folder.h"
+#include "tests/temporary_folder.h"
 
 namespace plumb {
 namespace {
@@ -170,7 +171,7 @@ TEST(SceneFile, FindsMeshesInTheSceneFolders) {
     const TemporaryFolder folder;
     folder.write("elsewhere/sub/a.obj", triangle_obj);
     const auto file = folder.write("a.toml", "mesh = \"sub/a.obj\"\n");
-    EXPECT_EQ(load_scene(file.string(), {folder.path() / "elsewhere"}).triangle_count(), 1u);
+    EXPECT_EQ(load_scene(file.string(), {folder.path / "elsewhere"}).triangle_count(), 1u);
     EXPECT_THAT(message_of<SceneError>([&] { load_scene(file.string()); }),
                 AllOf(HasSubstr("sub/a.obj"), HasSubstr("--scenes-dir")));
 }
