@@ -31,7 +31,8 @@ std::string program_checksum() {
 }
 
 // Planes are named by their place in the cell: the same plane occurs once per method.
-std::string name_of(std::size_t index, const char* half = "") { return fmt::format("cell{}{}", index, half); }
+std::string name_of(std::size_t index, std::string_view part = "") { return fmt::format("cell{}{}", index, part); }
+std::string seed_part(std::size_t seed) { return fmt::format("s{}", seed); }
 
 Json json_of(const PlaneImage& image) {
     Json passes = Json::array();
@@ -41,6 +42,7 @@ Json json_of(const PlaneImage& image) {
             {"method", image.method},
             {"path_tracer_samples", image.path_tracer_samples},
             {"oracle_layers", image.oracle_layers},
+            {"other_seeds", image.other_seeds.size()},
             {"bytes", image.gbuffer_bytes_per_pixel},
             {"timing", {image.timing.median, image.timing.lower_quartile, image.timing.upper_quartile}},
             {"repetitions", image.timing.repetitions},
@@ -76,6 +78,8 @@ std::optional<std::vector<PlaneImage>> CellStore::load(const std::string& key) c
             const std::size_t index = images.size();
             PlaneImage& image = images.emplace_back(image_of(entry));
             image.image = std::move(frame.plane(name_of(index)));
+            for (std::size_t seed = 0; seed < entry.at("other_seeds").get<std::size_t>(); ++seed)
+                image.other_seeds.push_back(std::move(frame.plane(name_of(index, seed_part(seed)))));
             if (frame.has(name_of(index, "a"))) {
                 image.halves = {std::move(frame.plane(name_of(index, "a"))),
                                 std::move(frame.plane(name_of(index, "b")))};
@@ -94,6 +98,8 @@ void CellStore::save(const std::string& key, const std::vector<PlaneImage>& imag
     for (std::size_t i = 0; i < images.size(); ++i) {
         entries.push_back(json_of(images[i]));
         frame.set(name_of(i), images[i].image);
+        for (std::size_t seed = 0; seed < images[i].other_seeds.size(); ++seed)
+            frame.set(name_of(i, seed_part(seed)), images[i].other_seeds[seed]);
         if (!images[i].halves) continue;
         frame.set(name_of(i, "a"), images[i].halves->a);
         frame.set(name_of(i, "b"), images[i].halves->b);

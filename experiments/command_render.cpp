@@ -40,6 +40,7 @@ struct RenderCommandOptions {
     std::filesystem::path truth;
     int frames = 0;  // 0: as many as the method needs to settle
     double frames_per_second = 30.0;
+    std::uint32_t seed = 0;
     int repetitions = 5;
     bool explain = false, print_method = false;
 };
@@ -75,7 +76,8 @@ void print_timing(const Timing& timing, const GlInfo& info) {
 RasterResult render_last_frame(Pipeline& pipeline, const RenderCommandOptions& options, const Scene& scene,
                                const Method& method, const Frame* truth) {
     const int frames = options.frames > 0 ? options.frames : frames_to_settle(method);
-    if (frames == 1) return pipeline.render(options.view.make_view(scene), nullptr, truth);
+    if (frames == 1)
+        return pipeline.render({.now = {options.view.make_view(scene)}, .truth = truth, .seed = options.seed});
     const auto at = [&](int frame) {
         const double time = options.view.time - (frames - 1 - frame) / options.frames_per_second;
         return Moment{options.view.make_view(scene, time), time};
@@ -85,10 +87,17 @@ RasterResult render_last_frame(Pipeline& pipeline, const RenderCommandOptions& o
             "--truth is that of one moment, and {} frames are rendered in which something moves; set --frames to 1",
             frames));
     }
+    const auto request = [&](int frame) {
+        return FrameRequest{.now = at(frame),
+                            .previous = at(frame - 1),
+                            .next = at(frame + 1),
+                            .truth = truth,
+                            .seed = options.seed};
+    };
     for (int frame = 0; frame + 1 < frames; ++frame)
-        pipeline.time_passes({.now = at(frame), .previous = at(frame - 1), .next = at(frame + 1), .truth = truth});
+        pipeline.time_passes(request(frame));
     fmt::print("frame {} of {}, at {:.3f} s\n", frames, frames, options.view.time);
-    return pipeline.render({.now = at(frames - 1), .previous = at(frames - 2), .next = at(frames), .truth = truth});
+    return pipeline.render(request(frames - 1));
 }
 
 int render(const RenderCommandOptions& options, const CommonOptions& common) {
@@ -118,6 +127,7 @@ int render(const RenderCommandOptions& options, const CommonOptions& common) {
     result.frame.facts["scene"] = options.view.scene;
     result.frame.facts["view"] = view.camera().name;
     result.frame.facts["method"] = method.name;
+    result.frame.facts["seed"] = fmt::format("{}", options.seed);
     result.frame.facts["method_parameters"] = print_method(method);
     result.frame.facts["renderer"] = context->info().renderer;
     write_frame_files(result.frame, options.view, view.camera().name, method.name);
@@ -152,6 +162,11 @@ void add_render_command(CLI::App& app, const CommonOptions& common, Action& acti
         ->add_option("--frames-per-second", options->frames_per_second,
                      "Of those frames, along --path and as objects move")
         ->check(CLI::PositiveNumber)
+        ->capture_default_str()
+        ->group(group);
+    command
+        ->add_option("--seed", options->seed,
+                     "Of the patterns of taps: other seeds give independent noise; 0: patterns as published")
         ->capture_default_str()
         ->group(group);
     command->add_option("--repetitions", options->repetitions, "Frames to time; 0: none")

@@ -44,6 +44,7 @@ DiskUse disk_use(const Experiment& experiment, const SceneFinder& finder, bool w
         if (has_limited_truth(plane)) limited += bytes;
     }
     const std::uintmax_t methods = experiment.methods.size(), oracles = experiment.oracle_layers.size();
+    const auto seeds = static_cast<std::uintmax_t>(experiment.seeds);
     const std::uintmax_t curve = experiment.path_tracer_samples.size();
     DiskUse use;
     for (const ExperimentScene& entry : experiment.scenes) {
@@ -51,7 +52,7 @@ DiskUse disk_use(const Experiment& experiment, const SceneFinder& finder, bool w
         std::uintmax_t frames = 0;
         for (const ExperimentPath& path : entry.paths) frames += static_cast<std::uintmax_t>(path.frames);
         use.cache += planes_of_truth * ((views + frames) * (1 + oracles) * full + views * limited);
-        use.output += views * (methods + curve) * full + frames * methods * full;  // cells
+        use.output += views * (methods * seeds + curve) * full + frames * methods * full;  // cells
         if (write_frames) use.output += views * (planes_of_truth * (full + limited) + methods * full);
         // Pictures: a byte or less per value, of truths, methods and error maps.
         use.output += (views + frames) * (2 * methods + 1) * full / sizeof(float);

@@ -196,6 +196,7 @@ Experiment parse_experiment(const ConfigValue& table, const std::filesystem::pat
     experiment.timing.repetitions = timing.integer("repetitions", experiment.timing.repetitions, 1, 100000);
     timing.finish();
 
+    experiment.seeds = reader.integer("seeds", experiment.seeds, 1, 256);
     experiment.path_tracer_samples = reader.integers("path_tracer_samples", experiment.path_tracer_samples, 2, 1 << 20);
     for (const int samples : experiment.path_tracer_samples) {
         if (samples % 2 != 0)
@@ -256,6 +257,7 @@ void make_small(Experiment& experiment) {
     experiment.reference.path_samples = std::min(experiment.reference.path_samples, 16);
     experiment.reference.target_error = 0.0;
     experiment.timing.repetitions = std::min(experiment.timing.repetitions, 3);
+    experiment.seeds = std::min(experiment.seeds, 2);
     std::erase_if(experiment.path_tracer_samples, [](int samples) { return samples > 4; });
 }
 

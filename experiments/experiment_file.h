@@ -66,6 +66,7 @@ struct Experiment {
     Quantities quantities;  // defaults for all scenes; `planes` empty
     ExperimentReference reference;
     ExperimentTiming timing;
+    int seeds = 1;  // pictures per view and method, each with other patterns of taps: errors are over all of them
     std::vector<int> path_tracer_samples = {4, 16};  // the path tracer's own points in the chart; empty: none
     // Layers that the oracle's rows may see, the best that any method could make of them; 0: all that is in view.
     std::vector<int> oracle_layers;

@@ -274,11 +274,7 @@ void PathRun::write_rows(RunResults& results) {
         if (row.is_method()) describe_method(experiment_, entry_, series->method, row);
         row.reference_samples = reference_samples_;
         row.gbuffer_bytes_per_pixel = series->gbuffer_bytes_per_pixel;
-        row.measures = series->measures.means();
-        row.mse = measure_named(row.measures, "mse"), row.psnr = measure_named(row.measures, "psnr");
-        row.ssim = measure_named(row.measures, "ssim"), row.data_range = measure_named(row.measures, "data_range");
-        row.mse_lower = row.mse_upper = no_value;
-        row.measured = true;
+        set_measures(series->measures.means(), row);
         if (series->error.members() > 0) add_error(series->error.error(), row);
         for (const auto& [region, of_region] : series->regions) {
             if (of_region.error.members() == 0) continue;

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "experiments/results.h"
 #include "frames/image.h"
@@ -22,6 +23,7 @@ struct PlaneImage {
     Timing timing = {};
     int gbuffer_bytes_per_pixel = 0;
     std::optional<ImageHalves> halves = {};  // of the oracle
+    std::vector<Image> other_seeds = {};     // of a method: the same with other patterns of taps
 };
 
 }  // namespace plumb

@@ -67,6 +67,11 @@ Json row_json(const ResultRow& row) {
     json["measured"] = row.measured;
     if (!row.measured) json["refusal"] = row.refusal;
     json["reference_samples"] = row.reference_samples;
+    if (row.seeds > 1) {
+        json["seeds"] = {{"pictures", row.seeds},
+                         {"unbiased_mse_lower", number_json(row.seeds_mse_lower)},
+                         {"unbiased_mse_upper", number_json(row.seeds_mse_upper)}};
+    }
     json["measures"] = Json::object();
     for (const auto& [name, value] : row.measures) json["measures"][name] = number_json(value);
     for (const RegionError& region : row.regions) {
@@ -102,6 +107,7 @@ Json experiment_json(const Experiment& experiment) {
                          {"target_error", experiment.reference.target_error},
                          {"seed", experiment.reference.seed},
                          {"most_noise", experiment.reference.most_noise}};
+    json["seeds"] = experiment.seeds;
     json["timing"] = {{"warm_up", experiment.timing.warm_up}, {"repetitions", experiment.timing.repetitions}};
     json["path_tracer_samples"] = experiment.path_tracer_samples;
     json["baseline"] = experiment.baseline;
@@ -142,7 +148,7 @@ std::string csv_text(const std::string& text) {
 std::string print_csv(const RunResults& results) {
     std::string text =
         "scene,view,path,plane,truth,method,curve,curve_parameter,curve_value,oracle_layers,"
-        "path_tracer_samples,measured,reference_samples";
+        "path_tracer_samples,measured,reference_samples,seeds,mse_lower_over_seeds,mse_upper_over_seeds";
     for (const std::string& name : measure_names()) text.append(",").append(name);
     for (const std::string& region : region_names()) text.append(",unbiased_mse_").append(region);
     text += ",flicker,flicker_lower,flicker_upper,method_warping,truth_warping,temporal_variance";
@@ -150,12 +156,13 @@ std::string print_csv(const RunResults& results) {
         ",milliseconds,milliseconds_lower_quartile,milliseconds_upper_quartile,repetitions,gbuffer_bytes_per_pixel,"
         "refusal\n";
     for (const ResultRow& row : results.rows) {
-        text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}", csv_text(row.scene), csv_text(row.view),
+        text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", csv_text(row.scene), csv_text(row.view),
                             csv_text(row.path), csv_text(row.plane), csv_text(row.truth), csv_text(row.method),
                             csv_text(row.curve), csv_text(row.curve_parameter),
                             row.curve.empty() ? "" : csv_number(row.curve_value),
                             row.oracle_layers >= 0 ? fmt::format("{}", row.oracle_layers) : "", row.path_tracer_samples,
-                            row.measured ? 1 : 0, row.reference_samples);
+                            row.measured ? 1 : 0, row.reference_samples, row.seeds, csv_number(row.seeds_mse_lower),
+                            csv_number(row.seeds_mse_upper));
         for (const auto& [name, value] : row.measures) text.append(",").append(csv_number(value));
         for (const std::string& name : region_names()) {
             const auto region = std::ranges::find(row.regions, name, &RegionError::region);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "experiments/experiment_file.h"
+#include "experiments/no_value.h"
 #include "experiments/system_facts.h"
 #include "rasterizer/pipeline.h"
 
@@ -51,11 +52,14 @@ struct ResultRow {
     bool measured = false;                                 // false: the reference's noise is too near to the difference
     std::string refusal;                                   // then: how many samples would do
     std::vector<std::pair<std::string, double>> measures;  // under the names of metrics/comparison.h
-    double mse = 0.0, mse_lower = 0.0, mse_upper = 0.0;    // free of the reference's noise where that is possible
-    double psnr = 0.0, ssim = 0.0;                         // NaN where there is none
-    double noise_mse = 0.0;                                // of the reference
-    double data_range = 1.0;                               // peak of PSNR, range of SSIM
-    int reference_samples = 0;                             // per pixel
+    // Free of the reference's noise where that is possible. The interval is for views and seeds like these.
+    double mse = 0.0, mse_lower = 0.0, mse_upper = 0.0;
+    int seeds = 1;                                        // pictures that all of this is the mean of
+    double seeds_mse_lower = no_value, seeds_mse_upper = no_value;  // for this very view, over seeds alone; NaN for one seed
+    double psnr = 0.0, ssim = 0.0;                        // NaN where there is none
+    double noise_mse = 0.0;                               // of the reference
+    double data_range = 1.0;                              // peak of PSNR, range of SSIM
+    int reference_samples = 0;                            // per pixel
     std::vector<RegionError> regions;
     std::vector<FrameMeasure> frames;    // of a path
     std::optional<Stability> stability;  // of a path

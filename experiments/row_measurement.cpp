@@ -4,8 +4,10 @@
 
 #include <fmt/format.h>
 
+#include "experiments/mean_measures.h"
 #include "experiments/no_value.h"
 #include "metrics/comparison.h"
+#include "metrics/error_series.h"
 
 namespace plumb {
 namespace {
@@ -21,7 +23,47 @@ Frame reference_of(const Truth& truth) {
     return reference;
 }
 
+// What a method shows, seed after seed.
+void add_seeds(const PlaneImage& image, const Frame& reference, int reference_samples,
+               const std::vector<Region>& regions, const ComparisonSettings& settings, ResultRow& row) {
+    MeanMeasures measures;
+    ErrorSeries error(SeriesOf::seeds, settings.referenced);
+    std::vector<ErrorSeries> errors_in_regions(regions.size(), error);
+    const bool has_halves = reference.has("half_a." + image.plane);
+    const auto add = [&](const Image& picture) {
+        Frame test(picture.width(), picture.height());
+        test.set(image.plane, picture);
+        measures.add(compare_frames(test, reference, settings).planes.front().measures());
+        if (!has_halves) return;
+        error.add(test, reference, image.plane, reference_samples);
+        for (std::size_t i = 0; i < regions.size(); ++i)
+            errors_in_regions[i].add(test, reference, image.plane, reference_samples, &regions[i].mask);
+    };
+    add(image.image);
+    for (const Image& picture : image.other_seeds) add(picture);
+
+    row.seeds = 1 + static_cast<int>(image.other_seeds.size());
+    set_measures(measures.means(), row);
+    if (error.members() == 0) return;
+    add_error(error.error(), row);
+    const Estimate over_seeds = error.over_members();
+    row.seeds_mse_lower = over_seeds.lower, row.seeds_mse_upper = over_seeds.upper;
+    for (std::size_t i = 0; i < regions.size(); ++i) {
+        if (errors_in_regions[i].members() == 0) continue;
+        const ReferencedError inside = errors_in_regions[i].error();
+        row.regions.push_back({regions[i].name, regions[i].pixels, inside.mse, inside.lower, inside.upper});
+    }
+}
+
 }  // namespace
+
+void set_measures(std::vector<std::pair<std::string, double>> measures, ResultRow& row) {
+    row.measures = std::move(measures);
+    row.mse = measure_named(row.measures, "mse"), row.psnr = measure_named(row.measures, "psnr");
+    row.ssim = measure_named(row.measures, "ssim"), row.data_range = measure_named(row.measures, "data_range");
+    row.mse_lower = row.mse_upper = row.seeds_mse_lower = row.seeds_mse_upper = no_value;
+    row.measured = true;
+}
 
 Frame frame_of(const PlaneImage& image) {
     Frame frame(image.image.width(), image.image.height());
@@ -57,17 +99,17 @@ ResultRow measure_row(const PlaneImage& image, const Truth& truth, const std::ve
     row.gbuffer_bytes_per_pixel = image.gbuffer_bytes_per_pixel;
     row.reference_samples = truth.samples;
 
-    const Frame test = frame_of(image), reference = reference_of(truth);
+    const Frame reference = reference_of(truth);
     ComparisonSettings settings;
     settings.referenced.noise_limit = most_noise;
+    if (!image.other_seeds.empty()) {
+        add_seeds(image, reference, truth.samples, regions, settings, row);
+        return row;
+    }
+    const Frame test = frame_of(image);
     const PlaneComparison comparison = compare_frames(test, reference, settings).planes.front();
-    row.measures = comparison.measures();
-    row.psnr = comparison.errors.psnr;
-    row.ssim = comparison.ssim ? comparison.ssim->mean : no_value;
-    row.data_range = comparison.errors.peak;
+    set_measures(comparison.measures(), row);
     row.mse = comparison.best_mse();
-    row.mse_lower = row.mse_upper = no_value;
-    row.measured = true;
     if (comparison.referenced) add_error(*comparison.referenced, row);
     if (reference.has("half_a." + image.plane)) {
         for (const ErrorInRegion& error :

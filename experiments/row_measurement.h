@@ -1,6 +1,8 @@
 // One row of results: an image held against a truth.
 #pragma once
 
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "experiments/plane_image.h"
@@ -18,6 +20,10 @@ Frame frame_of(const PlaneImage& image);
 // caller's. Throws ImageError where shapes differ or no value is finite.
 ResultRow measure_row(const PlaneImage& image, const Truth& truth, const std::vector<Region>& regions,
                       double most_noise);
+
+// Measures as metrics/comparison.h names them, and what else a row takes from them; the intervals are then still
+// missing.
+void set_measures(std::vector<std::pair<std::string, double>> measures, ResultRow& row);
 
 // What an error against a truth in halves says of a row.
 void add_error(const ReferencedError& error, ResultRow& row);

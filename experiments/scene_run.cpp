@@ -22,6 +22,14 @@ constexpr std::uint64_t independent_seed_mask = 0x9E3779B97F4A7C15;
 
 constexpr double share_of_references = 0.7;  // of a scene's time, for the progress line only
 
+// What a method shows of a view that stands still, in the last of so many frames; nothing is left of what was rendered
+// before.
+Image settled_plane(Pipeline& pipeline, const std::string& plane, int frames, const FrameRequest& request) {
+    pipeline.forget();
+    for (int frame = 1; frame < frames; ++frame) pipeline.time_passes(request);
+    return std::move(pipeline.render(request).frame.plane(plane));
+}
+
 std::ptrdiff_t place_of(const std::vector<std::string>& names, const std::string& name) {
     return std::ranges::find(names, name) - names.begin();
 }
@@ -162,12 +170,16 @@ void SceneRun::render_methods(const std::string& plane, RunResults& results) {
         };
         for (std::size_t i = 0; i < working.size(); ++i) {
             try {
-                const Frame* truth = &truths->second.full.frame;
-                for (int frame = 1; frame < frames[i]; ++frame) working[i]->time_passes(camera_view, truth);
-                RasterResult raster = working[i]->render(camera_view, nullptr, truth);
-                PlaneImage& image = images.emplace_back(
-                    PlaneImage{view, plane, methods[i]->name, std::move(raster.frame.plane(plane))});
+                PlaneImage image{view, plane, methods[i]->name, {}};
+                for (int seed = 0; seed < experiment_.seeds; ++seed) {
+                    Image picture = settled_plane(*working[i], plane, frames[i],
+                                                  {.now = {camera_view},
+                                                   .truth = &truths->second.full.frame,
+                                                   .seed = static_cast<std::uint32_t>(seed)});
+                    (seed == 0 ? image.image : image.other_seeds.emplace_back()) = std::move(picture);
+                }
                 image.gbuffer_bytes_per_pixel = static_cast<int>(working[i]->gbuffer_bytes_per_pixel());
+                images.push_back(std::move(image));
                 rendered.push_back(working[i]);
             } catch (const std::exception& error) {
                 fail(methods[i]->name, error);
@@ -255,9 +267,9 @@ void SceneRun::measure(const PlaneImage& image, RunResults& results) {
 std::string methods_key(const Experiment& experiment, const ExperimentScene& entry, const Scene& scene,
                         const View& view, const GlInfo& gl) {
     // The truth's key names scene, view and quantities; some methods take stages from it.
-    std::string key =
-        fmt::format("OpenGL {} {}; timing {} {}; truth {}", gl.renderer, gl.version, experiment.timing.warm_up,
-                    experiment.timing.repetitions, reference_key(scene, view, full_truth_settings(experiment, entry)));
+    std::string key = fmt::format("OpenGL {} {}; seeds {}; timing {} {}; truth {}", gl.renderer, gl.version,
+                                  experiment.seeds, experiment.timing.warm_up, experiment.timing.repetitions,
+                                  reference_key(scene, view, full_truth_settings(experiment, entry)));
     for (const Method& method : experiment.methods) {
         const Method in_scene = method_in_scene(method, entry, experiment.file.string());
         key += fmt::format("; {} {:016x}", method.name, method_hash(in_scene));

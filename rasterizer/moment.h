@@ -1,6 +1,7 @@
 // The scene at a moment, and a frame between its neighbours in time.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 
 #include "frames/frame.h"
@@ -25,6 +26,9 @@ struct FrameRequest {
     std::optional<Moment> previous = {};  // none: nothing has moved
     std::optional<Moment> next = {};      // none: unknown; all is taken to go on as it moved since `previous`
     const Frame* truth = nullptr;         // its planes feed the stages that the method takes from the truth
+    // Of all patterns of samples: pictures with different seeds have independent noise. 0: the patterns as their
+    // sources have them.
+    std::uint32_t seed = 0;
 };
 
 // A rigid motion or an affine one that takes `previous` to `now`, applied once more: constant velocity, also of

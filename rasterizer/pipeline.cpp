@@ -11,6 +11,7 @@
 #include "rasterizer/pass_timer.h"
 #include "rasterizer/passes.h"
 #include "rasterizer/plane_reader.h"
+#include "rasterizer/sample_spiral.h"
 #include "rasterizer/scene_geometry.h"
 #include "rasterizer/temporal_antialias.h"
 #include "rasterizer/view_uniforms.h"
@@ -79,13 +80,14 @@ struct Pipeline::Implementation {
         const Moment* next = request.next && !predicts ? &*request.next : nullptr;
         const View wide_next = with_jitter(next ? next->view : extrapolate(previous.view, view), frame_number_ + 1)
                                    .with_guard_band(method.gbuffer.guard_band);
-        view_uniforms.update(wide, wide_previous, method.gbuffer.guard_band, &wide_next, frame_number_);
+        view_uniforms.update(wide, wide_previous, method.gbuffer.guard_band, &wide_next, frame_number_,
+                             pattern_shift(request.seed));
         if (geometry) geometry->move_to(request.now, previous, next);
         // What was foretold was drawn with the offset of the frame that would follow.
         const bool foretold = foretold_ == request.now && (continues || offsets.size() == 1);
         const PassFrame frame{wide, wide_previous, request.truth, &wide_next, continues, foretold, frame_number_};
         // Whatever throws below leaves no history.
-        rendered_.reset(), foretold_.reset();
+        forget();
         for (std::size_t i = 0; i < passes.size(); ++i) {
             view_uniforms.bind();
             timer.begin(i);
@@ -100,6 +102,8 @@ struct Pipeline::Implementation {
             foretold_ = request.now;
         }
     }
+
+    void forget() { rendered_.reset(), foretold_.reset(); }
 
     // The view of the last frame as it was rendered.
     const View& shown() const { return *shown_; }
@@ -142,6 +146,8 @@ private:
 Pipeline::Pipeline(GlContext& context, const Scene& scene, const Method& method, const Quantities& quantities,
                    int width, int height)
     : implementation_(std::make_unique<Implementation>(context, scene, method, quantities, width, height)) {}
+
+void Pipeline::forget() { implementation_->forget(); }
 
 Pipeline::~Pipeline() = default;
 

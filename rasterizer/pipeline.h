@@ -50,6 +50,8 @@ public:
     // request's `previous`, and drop it else. Where `total` is anti-aliased over frames, every other plane is that of
     // the view with the frame's offset (temporal_antialias.h).
     RasterResult render(const FrameRequest& request);
+    // Renders the next frame as if it were the first: nothing is kept.
+    void forget();
     // Runs all passes, without reading anything back: for timing.
     std::vector<PassTiming> time_passes(const FrameRequest& request);
 

@@ -109,7 +109,7 @@ vec3 traced_lobe(ivec2 pixel, vec3 origin, vec3 camera_normal, Lobe lobe) {
     vec3 local_viewer = vec3(dot(lobe.to_viewer, x), 0.0, lobe.cosine_o);
     float root_o = smith_root(lobe.cosine_o, lobe.alpha);
     uvec2 start;
-    start.x = hash(uint(pixel.x) + 65536u * uint(pixel.y));
+    start.x = hash(uint(pixel.x + pattern_shift.x) + 65536u * uint(pixel.y + pattern_shift.y));
     start.y = hash(start.x + 0x9E3779B9u);
     vec3 sum = vec3(0.0);
     for (int i = first_ray; i < min(first_ray + RAYS_PER_DRAW, SAMPLES); ++i) {

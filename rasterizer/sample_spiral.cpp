@@ -48,6 +48,13 @@ int spiral_turns(int samples) {
                                                           : turns_beyond_table;
 }
 
+glm::ivec2 pattern_shift(std::uint32_t seed) {
+    if (seed == 0) return {0, 0};
+    std::uint64_t hash = seed * std::uint64_t{0x9E3779B97F4A7C15};
+    hash = (hash ^ hash >> 32) * std::uint64_t{0xD6E8FEB86659FD93};
+    return {static_cast<int>(hash >> 49), static_cast<int>(hash >> 32 & 0x7fff)};
+}
+
 SpiralTables::SpiralTables(int samples) {
     const int turns = spiral_turns(samples);
     for (int i = 0; i < samples; ++i) {

@@ -8,7 +8,7 @@ layout(std140, binding = SPIRAL_BINDING) uniform SpiralBlock {
 
 // The rotation (cosine, sine) of all taps of a pixel; `jitter` is in 2^-16.
 vec2 spiral_spin(ivec2 pixel, uint jitter) {
-    uvec2 p = uvec2(pixel);
+    uvec2 p = uvec2(pixel + pattern_shift);
     uint turns = ((3u * p.x) ^ (p.y + p.x * p.y)) * SPIRAL_TURNS_PER_HASH + jitter * SPIRAL_TURNS_PER_JITTER +
                  uint(frame_number) * SPIRAL_TURNS_PER_FRAME;
     uint index = turns >> (32 - SPIRAL_SPIN_BITS);
@@ -25,7 +25,8 @@ vec2 spiral_direction(int i, vec2 spin) {
 
 // 0.1 to 0.9 in 2^-16, from an integer hash of the pixel.
 uint spiral_jitter(ivec2 pixel) {
-    uint h = uint(pixel.x) * 0x9E3779B1u ^ uint(pixel.y) * 0x85EBCA77u;
+    uvec2 p = uvec2(pixel + pattern_shift);
+    uint h = p.x * 0x9E3779B1u ^ p.y * 0x85EBCA77u;
     h = (h ^ (h >> 15)) * 0xC2B2AE3Du;
     h = (h ^ (h >> 13)) * 0x27D4EB2Fu;
     return 6554u + ((h >> 16) * 52428u >> 16);

@@ -15,7 +15,8 @@
 // quantise rounds down to 1/1024 turn. The last term is there where taps vary in time: `frame` counts from the last
 // cut, and the golden ratio's fraction spreads the turns of any number of successive frames evenly (the source adds the
 // time in radians, which repeats nothing but depends on when a program was started). Pixels count from the bottom left,
-// as OpenGL's do. sample_spiral.glsl is the other half.
+// as OpenGL's do. A seed other than 0 moves the pattern: a pixel takes the spin and the jitter of another one, so far
+// away that they have nothing in common. sample_spiral.glsl is the other half.
 #pragma once
 
 #include <array>
@@ -34,6 +35,9 @@ constexpr int spiral_spin_count = 1 << spiral_spin_bits;
 
 // tau(N), for N = 1..maximum_spiral_samples. Throws MethodError that names the range.
 int spiral_turns(int samples);
+
+// How far `seed` moves the pattern, in pixels: less than 2^15, not at all for 0.
+glm::ivec2 pattern_shift(std::uint32_t seed);
 
 // The tables that the shader reads, as a uniform block of layout std140; OpenGL guarantees 16384 bytes for one.
 struct SpiralTables {

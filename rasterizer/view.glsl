@@ -18,6 +18,7 @@ layout(std140, binding = 0) uniform ViewBlock {
     mat4 next_clip_from_camera;
     vec2 previous_view_shift;
     int frame_number;         // since the last cut, from 0
+    ivec2 pattern_shift;      // pixels by which the seed moves all patterns of samples (sample_spiral.h)
 };
 
 // Depth planes hold +infinity where nothing is seen.

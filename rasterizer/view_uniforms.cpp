@@ -23,18 +23,20 @@ struct ViewBlock {
     glm::mat4 next_clip_from_camera;
     glm::vec2 previous_view_shift;
     int frame_number;
-    float padding;
+    int padding;
+    glm::ivec2 pattern_shift;
+    glm::ivec2 padding_at_end;
 };
 static_assert(offsetof(ViewBlock, view_size) == 256 && offsetof(ViewBlock, near_plane) == 280 &&
               offsetof(ViewBlock, view_shift) == 296 && offsetof(ViewBlock, next_camera_from_world) == 304 &&
-              offsetof(ViewBlock, previous_view_shift) == 432);
+              offsetof(ViewBlock, previous_view_shift) == 432 && offsetof(ViewBlock, pattern_shift) == 448);
 
 }  // namespace
 
 ViewUniforms::ViewUniforms(GlContext& context) : buffer_(context, sizeof(ViewBlock), nullptr, GL_DYNAMIC_STORAGE_BIT) {}
 
-void ViewUniforms::update(const View& view, const View& previous, int guard_band, const View* next,
-                          int frame_number) const {
+void ViewUniforms::update(const View& view, const View& previous, int guard_band, const View* next, int frame_number,
+                          const glm::ivec2& pattern_shift) const {
     ViewBlock block{};
     block.camera_from_world = view.camera_from_world();
     block.world_from_camera = view.camera().world_from_camera;
@@ -52,6 +54,7 @@ void ViewUniforms::update(const View& view, const View& previous, int guard_band
     block.view_shift = view.shift();
     block.previous_view_shift = previous.shift();
     block.frame_number = frame_number;
+    block.pattern_shift = pattern_shift;
     block.next_camera_from_world = (next ? *next : view).camera_from_world();
     block.next_clip_from_camera = (next ? *next : view).clip_from_camera();
     buffer_.write(0, sizeof(block), &block);

@@ -25,7 +25,9 @@ TEST(CellStore, GivesBackEveryBitOfWhatItKept) {
     oracle.oracle_layers = 2;
     oracle.halves = {Image(5, 3, 1), Image(5, 3, 1)};
     oracle.halves->b.values()[4] = 0.1f;
-    CellStore(folder.path / "cells").save("a key", {image_of("one", 0.5f), oracle});
+    PlaneImage with_seeds = image_of("one", 0.5f);
+    with_seeds.other_seeds = {Image(5, 3, 1, 0.75f), Image(5, 3, 1, 0.125f)};
+    CellStore(folder.path / "cells").save("a key", {with_seeds, oracle});
 
     const auto kept = CellStore(folder.path / "cells").load("a key");
     ASSERT_TRUE(kept);
@@ -40,6 +42,10 @@ TEST(CellStore, GivesBackEveryBitOfWhatItKept) {
     EXPECT_EQ(one.gbuffer_bytes_per_pixel, 12);
     EXPECT_EQ(one.oracle_layers, -1);
     EXPECT_FALSE(one.halves);
+    ASSERT_EQ(one.other_seeds.size(), 2u);
+    EXPECT_EQ(one.other_seeds[0].values()[7], 0.75f);
+    EXPECT_EQ(one.other_seeds[1].values()[7], 0.125f);
+    EXPECT_TRUE(two.other_seeds.empty());
     EXPECT_EQ(two.oracle_layers, 2);
     ASSERT_TRUE(two.halves);
     EXPECT_EQ(two.halves->b.values()[4], 0.1f);

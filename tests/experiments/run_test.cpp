@@ -27,6 +27,7 @@ resolution = [64, 36]
 methods = ["one_layer", "two_layers", {name = "few", base = "one_layer", sweep = {"ao.samples" = [4, 8]}}]
 path_tracer_samples = [2]
 oracle = [1]
+seeds = 3
 [reference]
 samples = 16
 path_samples = 8
@@ -91,6 +92,13 @@ TEST_F(Run, WritesARowForEveryCellOfTheSceneThatWorks) {
     for (const auto& row : json["rows"]) {
         if (row.contains("oracle_layers")) continue;  // takes no time
         EXPECT_GT(row["milliseconds"]["median"], 0.0) << row.dump();
+    }
+    for (const auto& row : json["rows"]) {
+        const bool of_seeds = row.contains("parameters") && !row.contains("path");
+        ASSERT_EQ(row.contains("seeds"), of_seeds) << row.dump();
+        if (!of_seeds) continue;
+        EXPECT_EQ(row["seeds"]["pictures"], 3);
+        EXPECT_LT(row["seeds"]["unbiased_mse_lower"], row["seeds"]["unbiased_mse_upper"]) << row.dump();
     }
     EXPECT_EQ(json["failures"].size(), 1u);
     EXPECT_EQ(json["experiment"]["resolution"], nlohmann::json({64, 36}));
