@@ -29,13 +29,19 @@ bool matches(const RowPattern& pattern, const ResultRow& row) {
 }
 
 // NaN where it does not exist.
+double stability_measure(const std::optional<Stability>& stability, const std::string& measure) {
+    if (!stability) return no_value;
+    if (measure == "flicker") return stability->flicker;
+    if (measure == "method_warping") return stability->method_warping;
+    if (measure == "temporal_variance") return stability->temporal_variance;
+    return no_value;
+}
+
 double measure_of(const ResultRow& row, const std::string& measure) {
     if (measure == "rmse") return row.rmse();
     if (measure == "mse") return row.mse;
-    if (measure == "flicker") return row.stability ? row.stability->flicker : no_value;
-    if (measure == "method_warping") return row.stability ? row.stability->method_warping : no_value;
-    if (measure == "temporal_variance") return row.stability ? row.stability->temporal_variance : no_value;
-    return measure_named(row.measures, measure);
+    const double value = stability_measure(row.stability, measure);
+    return std::isnan(value) ? measure_named(row.measures, measure) : value;
 }
 
 RowValue region_value(const ResultRow& row, const Threshold& threshold) {
@@ -48,6 +54,13 @@ RowValue region_value(const ResultRow& row, const Threshold& threshold) {
                                     names.empty() ? "it has none" : name_hint(threshold.region, names));
     } else if (found->pixels == 0) {
         result.untold = fmt::format("region '{}' has no pixels", threshold.region);
+    } else if (threshold.measure != "rmse" && threshold.measure != "mse") {
+        const double value = stability_measure(found->stability, threshold.measure);
+        if (std::isfinite(value)) {
+            result.value = value;
+        } else {
+            result.untold = fmt::format("{} over region '{}' does not exist here", threshold.measure, threshold.region);
+        }
     } else if (found->mse_lower <= 0.0) {
         result.untold = fmt::format("the error over region '{}' is lost in the truth's noise", threshold.region);
     } else {

@@ -88,14 +88,10 @@ RasterResult render_last_frame(Pipeline& pipeline, const RenderCommandOptions& o
             frames));
     }
     const auto request = [&](int frame) {
-        return FrameRequest{.now = at(frame),
-                            .previous = at(frame - 1),
-                            .next = at(frame + 1),
-                            .truth = truth,
-                            .seed = options.seed};
+        return FrameRequest{
+            .now = at(frame), .previous = at(frame - 1), .next = at(frame + 1), .truth = truth, .seed = options.seed};
     };
-    for (int frame = 0; frame + 1 < frames; ++frame)
-        pipeline.time_passes(request(frame));
+    for (int frame = 0; frame + 1 < frames; ++frame) pipeline.time_passes(request(frame));
     fmt::print("frame {} of {}, at {:.3f} s\n", frames, frames, options.view.time);
     return pipeline.render(request(frames - 1));
 }

@@ -36,7 +36,9 @@ Limit parse_limit(const std::string& part, bool fails_above) {
     if (at != std::string::npos && std::ranges::find(region_names(), limit.region) == region_names().end()) {
         throw ConfigError(fmt::format("limit '{}': unknown region; {}", part, name_hint(limit.region, region_names())));
     }
-    if (!limit.region.empty() && std::ranges::find(measure_names(), limit.measure) == measure_names().end()) {
+    const bool of_regions = std::ranges::find(measure_names(), limit.measure) != measure_names().end() ||
+                            std::ranges::find(stability_names(), limit.measure) != stability_names().end();
+    if (!limit.region.empty() && !of_regions) {
         throw ConfigError(fmt::format("limit '{}': {} is only measured over whole images; write it without '@{}'", part,
                                       limit.measure, limit.region));
     }

@@ -40,6 +40,7 @@ void add_errors(const ResultRow& row, Cell& cell) {
     }
     for (const RegionError& region : row.regions) {
         cell.set(fmt::format("rmse in {}", region.region), std::sqrt(std::max(region.mse, 0.0)));
+        if (region.stability) cell.set(fmt::format("flicker in {}", region.region), region.stability->flicker);
     }
     if (row.stability) {
         cell.set("flicker", row.stability->flicker);

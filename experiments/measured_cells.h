@@ -5,7 +5,7 @@
 // Measures of a cell:
 //   rmse, mse            free of the reference's noise where that is possible; none where a comparison was refused
 //   bias, psnr, ssim...  the names of metrics/comparison.h
-//   rmse in REGION       the same over some of the pixels (metrics/regions.h)
+//   rmse in REGION       the same over some of the pixels (metrics/regions.h); along paths also flicker in REGION
 //   flicker, warping, truth warping, temporal variance     of camera paths
 //   ms, ms of PASS       median time of the frame and of one pass
 //   bytes per pixel      of the G-buffer

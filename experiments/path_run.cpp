@@ -35,6 +35,12 @@ PathStabilitySettings stability_settings(const Experiment& experiment) {
     return settings;
 }
 
+Stability stability_of(const PathStabilityResult& result) {
+    return {result.flicker.value,        result.flicker.lower,       result.flicker.upper,
+            result.method_warping.value, result.truth_warping.value, result.temporal_variance.value,
+            result.trustworthy};
+}
+
 }  // namespace
 
 // What one method makes of one plane, frame after frame.
@@ -226,7 +232,8 @@ void PathRun::add(const PlaneImage& image, int frame, const Frame& truth, const 
             of_region.pixels += region.pixels;
         }
     }
-    if (const std::optional<Flicker> flicker = series.stability.add(test, truth)) measure.flicker = flicker->rms;
+    if (const std::optional<Flicker> flicker = series.stability.add(test, truth, nullptr, regions))
+        measure.flicker = flicker->rms;
     series.frames.push_back(measure);
     if (series.oracle_layers < 0) series.images.push_back(image.image);  // pictures show methods
     series.timings.push_back(image.timing);
@@ -276,16 +283,16 @@ void PathRun::write_rows(RunResults& results) {
         row.gbuffer_bytes_per_pixel = series->gbuffer_bytes_per_pixel;
         set_measures(series->measures.means(), row);
         if (series->error.members() > 0) add_error(series->error.error(), row);
+        const std::map<std::string, PathStabilityResult> of_regions = series->stability.of_regions();
         for (const auto& [region, of_region] : series->regions) {
             if (of_region.error.members() == 0) continue;
             const ReferencedError error = of_region.error.error();
             row.regions.push_back({region, of_region.pixels, error.mse, error.lower, error.upper});
+            if (const auto found = of_regions.find(region); found != of_regions.end())
+                row.regions.back().stability = stability_of(found->second);
         }
         row.frames = series->frames;
-        const PathStabilityResult stability = series->stability.result();
-        row.stability =
-            Stability{stability.flicker.value,        stability.flicker.lower,       stability.flicker.upper,
-                      stability.method_warping.value, stability.truth_warping.value, stability.temporal_variance.value};
+        row.stability = stability_of(series->stability.result());
         if (row.is_method()) row.timing = median_timing(series->timings);
         results.rows.push_back(std::move(row));
     }

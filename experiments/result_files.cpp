@@ -35,14 +35,20 @@ Json passes_of(const Timing& timing) {
     return json;
 }
 
+Json stability_json(const Stability& stability) {
+    return {{"flicker", number_json(stability.flicker)},
+            {"flicker_lower", number_json(stability.flicker_lower)},
+            {"flicker_upper", number_json(stability.flicker_upper)},
+            {"method_warping", number_json(stability.method_warping)},
+            {"truth_warping", number_json(stability.truth_warping)},
+            {"temporal_variance", number_json(stability.temporal_variance)},
+            {"trustworthy", stability.trustworthy}};
+}
+
 void add_path(const ResultRow& row, Json& json) {
-    if (row.stability) {
-        json["stability"] = {{"flicker", number_json(row.stability->flicker)},
-                             {"flicker_lower", number_json(row.stability->flicker_lower)},
-                             {"flicker_upper", number_json(row.stability->flicker_upper)},
-                             {"method_warping", number_json(row.stability->method_warping)},
-                             {"truth_warping", number_json(row.stability->truth_warping)},
-                             {"temporal_variance", number_json(row.stability->temporal_variance)}};
+    if (row.stability) json["stability"] = stability_json(*row.stability);
+    for (const RegionError& region : row.regions) {
+        if (region.stability) json["regions"][region.region]["stability"] = stability_json(*region.stability);
     }
     for (const FrameMeasure& frame : row.frames) {
         json["frames"].push_back(
@@ -150,7 +156,9 @@ std::string print_csv(const RunResults& results) {
         "scene,view,path,plane,truth,method,curve,curve_parameter,curve_value,oracle_layers,"
         "path_tracer_samples,measured,reference_samples,seeds,mse_lower_over_seeds,mse_upper_over_seeds";
     for (const std::string& name : measure_names()) text.append(",").append(name);
-    for (const std::string& region : region_names()) text.append(",unbiased_mse_").append(region);
+    for (const char* measure : {"unbiased_mse", "flicker"}) {
+        for (const std::string& region : region_names()) text += fmt::format(",{}_{}", measure, region);
+    }
     text += ",flicker,flicker_lower,flicker_upper,method_warping,truth_warping,temporal_variance";
     text +=
         ",milliseconds,milliseconds_lower_quartile,milliseconds_upper_quartile,repetitions,gbuffer_bytes_per_pixel,"
@@ -164,12 +172,16 @@ std::string print_csv(const RunResults& results) {
                             row.measured ? 1 : 0, row.reference_samples, row.seeds, csv_number(row.seeds_mse_lower),
                             csv_number(row.seeds_mse_upper));
         for (const auto& [name, value] : row.measures) text.append(",").append(csv_number(value));
-        for (const std::string& name : region_names()) {
-            const auto region = std::ranges::find(row.regions, name, &RegionError::region);
-            text.append(",").append(region == row.regions.end() ? "" : csv_number(region->mse));
-        }
+        const auto add_regions = [&](const auto& value_of) {
+            for (const std::string& name : region_names()) {
+                const auto region = std::ranges::find(row.regions, name, &RegionError::region);
+                text.append(",").append(region == row.regions.end() ? "" : csv_number(value_of(*region)));
+            }
+        };
+        add_regions([](const RegionError& region) { return region.mse; });
+        add_regions([](const RegionError& region) { return region.stability ? region.stability->flicker : no_value; });
         const Stability stability =
-            row.stability.value_or(Stability{no_value, no_value, no_value, no_value, no_value, no_value});
+            row.stability.value_or(Stability{no_value, no_value, no_value, no_value, no_value, no_value, false});
         for (const double value : {stability.flicker, stability.flicker_lower, stability.flicker_upper,
                                    stability.method_warping, stability.truth_warping, stability.temporal_variance})
             text.append(",").append(csv_number(value));

@@ -21,11 +21,20 @@ struct Timing {
     std::vector<PassTiming> passes;  // medians; of the path tracer: one
 };
 
+// How steady the error is over a camera path (metrics/path_stability.h), with 95 % intervals.
+struct Stability {
+    double flicker = 0.0, flicker_lower = 0.0, flicker_upper = 0.0;
+    double method_warping = 0.0, truth_warping = 0.0;
+    double temporal_variance = 0.0;
+    bool trustworthy = true;  // the truth's noise is small beside the flicker
+};
+
 // The error over some of a view's pixels (metrics/regions.h).
 struct RegionError {
     std::string region;
     std::size_t pixels = 0;
     double mse = 0.0, mse_lower = 0.0, mse_upper = 0.0;  // free of the reference's noise
+    std::optional<Stability> stability = {};             // of a path
 };
 
 // One frame of a camera path.
@@ -33,13 +42,6 @@ struct FrameMeasure {
     double time = 0.0;     // seconds, on the path
     double rmse = 0.0;     // free of the reference's noise
     double flicker = 0.0;  // since the frame before; NaN for the first
-};
-
-// How steady the error is over a camera path (metrics/path_stability.h), with 95 % intervals.
-struct Stability {
-    double flicker = 0.0, flicker_lower = 0.0, flicker_upper = 0.0;
-    double method_warping = 0.0, truth_warping = 0.0;
-    double temporal_variance = 0.0;
 };
 
 struct ResultRow {
@@ -54,12 +56,13 @@ struct ResultRow {
     std::vector<std::pair<std::string, double>> measures;  // under the names of metrics/comparison.h
     // Free of the reference's noise where that is possible. The interval is for views and seeds like these.
     double mse = 0.0, mse_lower = 0.0, mse_upper = 0.0;
-    int seeds = 1;                                        // pictures that all of this is the mean of
-    double seeds_mse_lower = no_value, seeds_mse_upper = no_value;  // for this very view, over seeds alone; NaN for one seed
-    double psnr = 0.0, ssim = 0.0;                        // NaN where there is none
-    double noise_mse = 0.0;                               // of the reference
-    double data_range = 1.0;                              // peak of PSNR, range of SSIM
-    int reference_samples = 0;                            // per pixel
+    int seeds = 1;  // pictures that all of this is the mean of
+    double seeds_mse_lower = no_value,
+           seeds_mse_upper = no_value;  // for this very view, over seeds alone; NaN for one seed
+    double psnr = 0.0, ssim = 0.0;      // NaN where there is none
+    double noise_mse = 0.0;             // of the reference
+    double data_range = 1.0;            // peak of PSNR, range of SSIM
+    int reference_samples = 0;          // per pixel
     std::vector<RegionError> regions;
     std::vector<FrameMeasure> frames;    // of a path
     std::optional<Stability> stability;  // of a path

@@ -104,12 +104,17 @@ void SequenceComparison::add(const std::string& name, const Frame& test, const F
         only_in_reference_ = comparison.only_in_reference;
     }
     MeasuredFrame frame{name, {}};
+    std::vector<Region> regions;
+    if (settings_.regions) {
+        const bool follows = before_ && knows_motion(reference);
+        regions = regions_of(reference, follows ? &*before_ : nullptr, settings_.region_settings);
+    }
     std::vector<std::string> planes;
     for (const PlaneComparison& plane : comparison.planes) {
         planes.push_back(plane.plane);
         MeasuredThing& thing = frame.things.emplace_back(MeasuredThing{plane.plane, "", plane.measures()});
         add_to_series(test, reference, plane.plane, "", settings_.comparison.referenced.mask);
-        if (knows_motion(reference) && !is_geometry_plane(plane.plane)) add_stability(test, reference, thing);
+        if (knows_motion(reference) && !is_geometry_plane(plane.plane)) add_stability(test, reference, regions, thing);
     }
     if (has_gbuffer(test, reference)) {
         GbufferFidelitySettings fidelity;
@@ -117,14 +122,13 @@ void SequenceComparison::add(const std::string& name, const Frame& test, const F
         for (const LayerFidelity& layer : gbuffer_fidelity(test, reference, fidelity))
             frame.things.push_back({layer.layer, "", layer.measures()});
     }
-    if (settings_.regions) add_regions(test, reference, planes, frame);
+    add_regions(test, reference, planes, regions, frame);
     frames_.push_back(std::move(frame));
 }
 
 void SequenceComparison::add_regions(const Frame& test, const Frame& reference, const std::vector<std::string>& planes,
-                                     MeasuredFrame& frame) {
-    const bool follows = before_ && knows_motion(reference);
-    for (const Region& region : regions_of(reference, follows ? &*before_ : nullptr, settings_.region_settings)) {
+                                     const std::vector<Region>& regions, MeasuredFrame& frame) {
+    for (const Region& region : regions) {
         ComparisonSettings inside = settings_.comparison;
         inside.flip = FlipRange::none;  // it would be made of the whole image again for every region
         inside.referenced.mask = &region.mask;
@@ -140,7 +144,7 @@ void SequenceComparison::add_regions(const Frame& test, const Frame& reference, 
             add_to_series(test, reference, plane, region.name, &region.mask);
         }
     }
-    if (!reference.has("position")) return;
+    if (regions.empty() || !reference.has("position")) return;
     before_.emplace(reference.width(), reference.height());
     before_->set("position", reference.plane("position"));
 }
@@ -153,9 +157,10 @@ void SequenceComparison::add_to_series(const Frame& test, const Frame& reference
         .first->second.add(test, reference, plane, samples_of(reference), mask);
 }
 
-void SequenceComparison::add_stability(const Frame& test, const Frame& reference, MeasuredThing& thing) {
+void SequenceComparison::add_stability(const Frame& test, const Frame& reference, const std::vector<Region>& regions,
+                                       MeasuredThing& thing) {
     PathStability& stability = stability_.try_emplace(thing.name, thing.name, settings_.stability).first->second;
-    const auto flicker = stability.add(test, reference, settings_.comparison.referenced.mask);
+    const auto flicker = stability.add(test, reference, settings_.comparison.referenced.mask, regions);
     if (!flicker) return;
     thing.measures.insert(thing.measures.end(), {{"flicker", flicker->rms},
                                                  {"flicker_lower", flicker->rms_lower},
@@ -197,8 +202,15 @@ std::vector<MeasuredThing> SequenceComparison::whole() const {
         }
         if (const auto error = errors_.find(key); error != errors_.end() && error->second.members() > 0)
             set_error(thing, error->second.error());
-        if (const auto stability = stability_.find(key); stability != stability_.end())
+        const auto stability = stability_.find(thing.name);
+        if (stability == stability_.end()) continue;
+        if (thing.region.empty()) {
             add_measures(thing, stability->second.result());
+        } else {
+            const auto of_regions = stability->second.of_regions();
+            if (const auto region = of_regions.find(thing.region); region != of_regions.end())
+                add_measures(thing, region->second);
+        }
     }
     whole_images_first(things);
     return things;

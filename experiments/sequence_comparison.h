@@ -50,10 +50,11 @@ public:
 
 private:
     void add_regions(const Frame& test, const Frame& reference, const std::vector<std::string>& planes,
-                     MeasuredFrame& frame);
+                     const std::vector<Region>& regions, MeasuredFrame& frame);
     void add_to_series(const Frame& test, const Frame& reference, const std::string& plane, const std::string& region,
                        const Image* mask);
-    void add_stability(const Frame& test, const Frame& reference, MeasuredThing& thing);
+    void add_stability(const Frame& test, const Frame& reference, const std::vector<Region>& regions,
+                       MeasuredThing& thing);
 
     SequenceSettings settings_;
     std::vector<MeasuredFrame> frames_;

@@ -69,10 +69,13 @@ void read_measure(ConfigReader& reader, Threshold& threshold) {
         reader.fail("measure", fmt::format("unknown measure '{}' of kind \"{}\"; {}", threshold.measure,
                                            to_string(threshold.kind), name_hint(threshold.measure, known)));
     }
-    if (of_flicker) return;
     threshold.region = reader.text("region", "");
-    if (!threshold.region.empty() && threshold.measure != "rmse" && threshold.measure != "mse")
-        reader.fail("region", "regions have rmse and mse only; take one of them as the measure");
+    const bool measured_in_regions = threshold.measure == "rmse" || threshold.measure == "mse" ||
+                                     std::ranges::find(flicker_measures, threshold.measure) != flicker_measures.end();
+    if (!threshold.region.empty() && !measured_in_regions) {
+        reader.fail("region", fmt::format("regions have rmse, mse, {} only; take one of them as the measure",
+                                          fmt::join(flicker_measures, ", ")));
+    }
 }
 
 Threshold read_threshold(ConfigReader& reader) {

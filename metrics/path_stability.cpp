@@ -79,26 +79,32 @@ PathStability::PathStability(std::string plane, const PathStabilitySettings& set
     }
 }
 
-std::optional<Flicker> PathStability::add(const Frame& method, const Frame& truth, const Image* mask) {
+std::optional<Flicker> PathStability::add(const Frame& method, const Frame& truth, const Image* mask,
+                                          const std::vector<Region>& regions) {
     require_motion(truth, "the truth");
     past_.push_back(FrameErrors::of(method, truth, plane_));
     ++frames_;
     const FrameErrors& now = past_.back();
     if (mask) require_mask_fits(*mask, now.method);
+    for (const Region& region : regions) require_mask_fits(region.mask, now.method);
     if (past_.size() < 2) return std::nullopt;
-    const BootstrapSettings& bootstrap = settings_.flicker.bootstrap;
-    const BlockGrid grid(now.method.width(), now.method.height(), bootstrap.block_size);
-    ChangeSums sums = sum_changes(past_[past_.size() - 2], now, grid, settings_.flicker.tolerance, mask);
-    const Flicker of_frame = flicker_of(sums, bootstrap);
-    error_.add(std::move(sums.error));
-    method_.add(std::move(sums.method));
-    truth_.add(std::move(sums.truth));
-    noise_.add(std::move(sums.noise));
-    pixels_ += sums.pixels, not_visible_ += sums.not_visible, non_finite_ += sums.non_finite;
-    if (past_.size() == static_cast<std::size_t>(settings_.window)) {
-        variance_.add(sum_variances(grid, mask));
-        past_.pop_front();
-    }
+    const BlockGrid grid(now.method.width(), now.method.height(), settings_.flicker.bootstrap.block_size);
+    const Flicker of_frame = add_change(grid, mask, whole_);
+    for (const Region& region : regions) add_change(grid, &region.mask, regions_[region.name]);
+    if (past_.size() == static_cast<std::size_t>(settings_.window)) past_.pop_front();
+    return of_frame;
+}
+
+// The change from the frame before, and where enough frames have passed the variance.
+Flicker PathStability::add_change(const BlockGrid& grid, const Image* mask, Sums& sums) const {
+    ChangeSums change = sum_changes(past_[past_.size() - 2], past_.back(), grid, settings_.flicker.tolerance, mask);
+    const Flicker of_frame = flicker_of(change, settings_.flicker.bootstrap);
+    sums.error.add(std::move(change.error));
+    sums.method.add(std::move(change.method));
+    sums.truth.add(std::move(change.truth));
+    sums.noise.add(std::move(change.noise));
+    sums.pixels += change.pixels, sums.not_visible += change.not_visible, sums.non_finite += change.non_finite;
+    if (past_.size() == static_cast<std::size_t>(settings_.window)) sums.variance.add(sum_variances(grid, mask));
     return of_frame;
 }
 
@@ -135,19 +141,25 @@ std::vector<BlockSum> PathStability::sum_variances(const BlockGrid& grid, const 
     return blocks;
 }
 
-PathStabilityResult PathStability::result() const {
+std::map<std::string, PathStabilityResult> PathStability::of_regions() const {
+    std::map<std::string, PathStabilityResult> results;
+    for (const auto& [name, sums] : regions_) results.emplace(name, result_of(sums));
+    return results;
+}
+
+PathStabilityResult PathStability::result_of(const Sums& sums) const {
     const BootstrapSettings& bootstrap = settings_.flicker.bootstrap;
     PathStabilityResult result;
     result.frames = frames_;
-    const Estimate squared = error_.mean(bootstrap);
+    const Estimate squared = sums.error.mean(bootstrap);
     result.flicker = squared.root();
-    result.method_warping = method_.mean(bootstrap).root();
-    result.truth_warping = truth_.mean(bootstrap).root();
-    result.temporal_variance = variance_.mean(bootstrap);
-    const double noise = noise_.mean(bootstrap).value;
+    result.method_warping = sums.method.mean(bootstrap).root();
+    result.truth_warping = sums.truth.mean(bootstrap).root();
+    result.temporal_variance = sums.variance.mean(bootstrap);
+    const double noise = sums.noise.mean(bootstrap).value;
     result.noise = std::sqrt(noise);
     result.trustworthy = noise == 0.0 || (noise <= settings_.noise_limit * squared.value && squared.lower > 0.0);
-    result.pixels = pixels_, result.not_visible = not_visible_, result.non_finite = non_finite_;
+    result.pixels = sums.pixels, result.not_visible = sums.not_visible, result.non_finite = sums.non_finite;
     return result;
 }
 

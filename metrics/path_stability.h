@@ -1,8 +1,7 @@
 // How steady a method is along a camera path, fed frame by frame.
 //
 //   flicker            root of the mean, over all pixels visible in two consecutive frames and over all pairs of
-//   frames,
-//                      of the squared change of the error (flicker.h)
+//                      frames, of the squared change of the error (flicker.h)
 //   warping            the same of the images themselves, of the method and of the truth
 //   temporal variance  mean, over all pixels whose surface point was visible throughout the last `window` frames and
 //                      over all such frames, of the variance of the error at that point over these frames,
@@ -22,11 +21,14 @@
 
 #include <cstddef>
 #include <deque>
+#include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "frames/frame.h"
 #include "metrics/flicker.h"
+#include "metrics/regions.h"
 
 namespace plumb {
 
@@ -54,21 +56,30 @@ public:
     explicit PathStability(std::string plane, const PathStabilitySettings& settings = {});
 
     // The next frame of the path; planes as flicker() needs them. Gives its flicker, nothing for the first frame. Where
-    // a mask is given, only pixels that are not zero in it count (they may have been anywhere in the frame before).
-    // Throws ImageError for missing planes and sizes that change.
-    std::optional<Flicker> add(const Frame& method, const Frame& truth, const Image* mask = nullptr);
+    // a mask is given, only pixels that are not zero in it count (they may have been anywhere in the frame before). The
+    // same is summed over each of `regions` by itself. Throws ImageError for missing planes and sizes that change.
+    std::optional<Flicker> add(const Frame& method, const Frame& truth, const Image* mask = nullptr,
+                               const std::vector<Region>& regions = {});
 
-    PathStabilityResult result() const;
+    PathStabilityResult result() const { return result_of(whole_); }
+    // Over the regions that any frame had, by their names.
+    std::map<std::string, PathStabilityResult> of_regions() const;
 
 private:
+    struct Sums {
+        BlockSeries error, method, truth, noise, variance;
+        std::size_t pixels = 0, not_visible = 0, non_finite = 0;
+    };
+    Flicker add_change(const BlockGrid& grid, const Image* mask, Sums& sums) const;
     std::vector<BlockSum> sum_variances(const BlockGrid& grid, const Image* mask) const;
+    PathStabilityResult result_of(const Sums& sums) const;
 
     std::string plane_;
     PathStabilitySettings settings_;
     std::deque<FrameErrors> past_;  // the newest last
     std::size_t frames_ = 0;
-    BlockSeries error_, method_, truth_, noise_, variance_;
-    std::size_t pixels_ = 0, not_visible_ = 0, non_finite_ = 0;
+    Sums whole_;
+    std::map<std::string, Sums> regions_;
 };
 
 }  // namespace plumb

@@ -112,6 +112,23 @@ TEST(SequenceComparison, MeasuresRegionsAndGbuffers) {
     EXPECT_FALSE(whole.back().region.empty());
 }
 
+TEST(SequenceComparison, TellsFlickerOfRegions) {
+    SequenceSettings settings;
+    settings.regions = true;
+    SequenceComparison comparison(settings);
+    for (int frame = 0; frame < 3; ++frame) {
+        Frame test = image(0.5f);
+        // Grows in the first column, which the border holds.
+        for (int y = 0; y < height; ++y) test.plane("ao").at(0, y) += 0.25f * static_cast<float>(frame);
+        comparison.add("f", test, truth());
+    }
+    const auto whole = comparison.whole();
+    const double border = 2.0 * width * 2 + 2.0 * (height - 4) * 2;
+    EXPECT_NEAR(find(whole, "ao@border").measure("flicker"), 0.25 * std::sqrt(height / border), float32);
+    EXPECT_NEAR(find(whole, "ao@rest").measure("flicker"), 0.0, float32);
+    EXPECT_NEAR(find(whole, "ao").measure("flicker"), 0.25 * std::sqrt(1.0 / width), float32);
+}
+
 TEST(SequenceReport, PrintsWhatThereIsAndJsonHasAllOfIt) {
     SequenceSettings settings;
     settings.regions = true;
@@ -132,7 +149,7 @@ TEST(SequenceReport, PrintsWhatThereIsAndJsonHasAllOfIt) {
 TEST(Gate, HoldsMeasuresOfPlanesRegionsLayersAndSequences) {
     const std::vector<MeasuredThing> things = {{"ao", "", {{"rmse", 0.1}, {"flicker", 0.02}, {"flip", NAN}}},
                                                {"layer1", "", {{"agreement", 0.9}}},
-                                               {"ao", "border", {{"rmse", 0.3}}}};
+                                               {"ao", "border", {{"rmse", 0.3}, {"flicker", 0.04}}}};
     const auto failed = [&](const std::string& above, const std::string& below = "") {
         std::vector<Limit> limits = parse_limits(above, true);
         for (const Limit& limit : parse_limits(below, false)) limits.push_back(limit);
@@ -142,12 +159,13 @@ TEST(Gate, HoldsMeasuresOfPlanesRegionsLayersAndSequences) {
     EXPECT_THAT(failed("rmse=0.05"), ElementsAre("ao: rmse = 0.1 is above 0.05"));
     EXPECT_THAT(failed("rmse@border=0.2,flicker=0.01"),
                 ElementsAre("ao: rmse@border = 0.3 is above 0.2", "ao: flicker = 0.02 is above 0.01"));
+    EXPECT_THAT(failed("flicker@border=0.03"), ElementsAre("ao: flicker@border = 0.04 is above 0.03"));
     EXPECT_THAT(failed("", "agreement=0.95"), ElementsAre("layer1: agreement = 0.9 is below 0.95"));
     EXPECT_THAT(failed("flip=1"), ElementsAre(HasSubstr("ao: flip does not exist")));
     EXPECT_THAT(failed("rmse@silhouettes=1"), ElementsAre(HasSubstr("rmse@silhouettes does not exist")));
     EXPECT_THAT(failed("temporal_variance=1"), ElementsAre(HasSubstr("temporal_variance does not exist")));
     EXPECT_THROW(parse_limits("rmse@boarder=1", true), ConfigError);
-    EXPECT_THROW(parse_limits("flicker@border=1", true), ConfigError) << "of whole images only";
+    EXPECT_THROW(parse_limits("agreement@border=1", true), ConfigError) << "of whole G-buffers only";
     EXPECT_THROW(parse_limits("rsme=1", true), ConfigError);
     EXPECT_THROW(parse_limits("rmse=", true), ConfigError);
 }

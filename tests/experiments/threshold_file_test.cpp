@@ -73,6 +73,7 @@ TEST(Thresholds, FlickerIsThatOfPaths) {
     EXPECT_EQ(threshold.rows.path, "*");
     EXPECT_EQ(threshold.rows.view, "");
     EXPECT_EQ(threshold.measure, "flicker");
+    EXPECT_EQ(parse(with_line(3, "kind = \"flicker\"\nregion = \"border\"")).thresholds.at(0).region, "border");
 }
 
 TEST(Thresholds, WaitForCalibrationWhereTheLimitSaysSo) {
@@ -96,7 +97,7 @@ TEST(Thresholds, MistakesAreReportedWithTheirLine) {
     EXPECT_THAT(parse_failure(valid + "measure = \"rsme\"\n"),
                 AllOf(HasSubstr("t.toml:8"), HasSubstr("did you mean 'rmse'?")));
     EXPECT_THAT(parse_failure(valid + "region = \"border\"\nmeasure = \"ssim\"\n"),
-                AllOf(HasSubstr("t.toml:8"), HasSubstr("rmse and mse only")));
+                AllOf(HasSubstr("t.toml:8"), HasSubstr("rmse, mse, flicker")));
     EXPECT_THAT(parse_failure(with_line(3, "kind = \"benefit\"")), HasSubstr("'relative_to' is missing"));
     EXPECT_THAT(parse_failure(with_line(3, "kind = \"cost\"\nmeasure = \"rmse\"")),
                 AllOf(HasSubstr("t.toml:4"), HasSubstr("unknown key")));

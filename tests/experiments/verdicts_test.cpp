@@ -131,6 +131,13 @@ TEST(Verdicts, RowsOfPathsAndViewsAreToldApart) {
     EXPECT_EQ(verdict.value.rows, 1);
     EXPECT_EQ(verdict.value.place, "cornell / strafe");
     EXPECT_EQ(verdict_of(limit_of(ThresholdKind::error, "two", 1.0), rows).value.rows, 3);
+    flicker.region = "silhouettes";
+    rows.back().regions.push_back({"silhouettes", 100, 0.01, 0.009, 0.011, Stability{.flicker = 0.05}});
+    rows.back().regions.push_back({"border", 100, 0.01, 0.009, 0.011});
+    EXPECT_EQ(*verdict_of(flicker, rows).value.value, 0.05);
+    flicker.region = "border";
+    EXPECT_EQ(verdict_of(flicker, rows).status, VerdictStatus::untold);
+    flicker.region = "";
     flicker.kind = ThresholdKind::benefit, flicker.relative_to = "one", flicker.limit = 0.7;
     rows.push_back(path_row("one", 0.06));
     EXPECT_NEAR(*verdict_of(flicker, rows).value.value, 0.5, 1e-12);

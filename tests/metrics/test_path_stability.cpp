@@ -96,6 +96,39 @@ TEST(PathStability, OfAMaskCountsItsPixelsAlone) {
     EXPECT_EQ(stability.result().pixels, 2u * 4);
 }
 
+TEST(PathStability, OfRegionsIsThatOfEachPixelsOwnFrame) {
+    PathStability stability("direct");
+    for (int t = 0; t < 8; ++t) {
+        Region upper{"border", Image(wall_width, wall_height, 1)};
+        for (int x = 0; x < wall_width; ++x) upper.mask.at(x, 0) = 1.0f;
+        upper.pixels = wall_width;
+        Region lower{"silhouettes", Image(wall_width, wall_height, 1)};
+        for (int x = 0; x < wall_width; ++x) lower.mask.at(x, wall_height - 1) = 1.0f;
+        lower.pixels = wall_width;
+        // Grows by 0.25 a frame in the first row, and stays as wrong as it is in the last.
+        Frame method = wall(0, texture);
+        for (int x = 0; x < wall_width; ++x) {
+            method.plane("direct").at(x, 0) += 0.25f * static_cast<float>(t);
+            method.plane("direct").at(x, wall_height - 1) += 0.5f;
+        }
+        // A region may be missing in some frames.
+        stability.add(method, wall(0, texture), nullptr,
+                      t < 6 ? std::vector<Region>{upper, lower} : std::vector<Region>{upper});
+    }
+    const auto regions = stability.of_regions();
+    ASSERT_EQ(regions.size(), 2u);
+    EXPECT_NEAR(regions.at("border").flicker.value, 0.25, float32);
+    EXPECT_EQ(regions.at("border").pixels, std::size_t{7 * wall_width});
+    // Of what grows by d a frame over 8 frames: 6 d^2.
+    EXPECT_NEAR(regions.at("border").temporal_variance.value, 6.0 * 0.0625, 1e-5);
+    EXPECT_NEAR(regions.at("silhouettes").flicker.value, 0.0, float32);
+    EXPECT_EQ(regions.at("silhouettes").pixels, std::size_t{5 * wall_width});
+    EXPECT_TRUE(std::isnan(regions.at("silhouettes").temporal_variance.value))
+        << "it was not there in the eighth frame";
+    // One row of so many flickers.
+    EXPECT_NEAR(stability.result().flicker.value, 0.25 / std::sqrt(wall_height), 1e-5);
+}
+
 TEST(PathStability, IsNotBiasedByTheNoiseOfATruthInHalves) {
     // Noise in time of variance 0.05^2 in the method; noise of 0.2 in each half, which makes the truth's mean flicker
     // by 0.2 sqrt(2 / 2) = 0.2, thrice as much as the method does.
