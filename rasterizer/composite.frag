@@ -1,7 +1,7 @@
 // The sum of all terms, physical or as the demo of Mara et al. weighs them; composite_pass.h has the formulas.
 //
 // Defines: the texture units of the planes that there are: DIRECT, EMISSION, INDIRECT, REFLECTION; DEMO, and then
-// VISIBILITY and CONFIDENCE, and where there is ambient light DEPTH, NORMAL, ALBEDO and those of ambient_light.glsl.
+// VISIBILITY, with radiosity CONFIDENCE, and where there is ambient light DEPTH, NORMAL, ALBEDO and those of ambient_light.glsl.
 
 #ifdef DEPTH
 #include "ambient_light.glsl"
@@ -22,6 +22,8 @@ layout(binding = REFLECTION) uniform sampler2DArray reflection_plane;
 #endif
 #ifdef DEMO
 layout(binding = VISIBILITY) uniform sampler2DArray visibility_plane;
+#endif
+#ifdef CONFIDENCE
 layout(binding = CONFIDENCE) uniform sampler2DArray confidence_plane;
 #endif
 
@@ -45,7 +47,10 @@ void main() {
 #endif
 #ifdef DEMO
     float visibility = 0.95 * texelFetch(visibility_plane, texel, 0).r + 0.05;
-    float confidence = clamp(2.0 * (texelFetch(confidence_plane, texel, 0).r - 0.35) + 0.35, 0.0, 1.0);
+    float confidence = 0.0;
+#ifdef CONFIDENCE
+    confidence = clamp(2.0 * (texelFetch(confidence_plane, texel, 0).r - 0.35) + 0.35, 0.0, 1.0);
+#endif
     direct *= mix(1.0, visibility, 0.65);
     indirect *= confidence * visibility;
     indirect += mix(1.0, 0.3, confidence) * visibility * reflected_ambient(texel);

@@ -41,7 +41,8 @@ bool is_read(std::string_view plane, const Scene& scene, const Method& method) {
     if (plane == "emission") return scene.has_emissive_surfaces() || !scene.environment.is_black();
     if (plane == "indirect") return method.radiosity.enabled;
     if (plane == "reflection") return method.reflections.enabled;
-    if (plane == "ao" || plane == "confidence") return is_demo(method);
+    if (plane == "ao") return is_demo(method);
+    if (plane == "confidence") return is_demo(method) && method.radiosity.enabled;
     return is_demo(method) && method.composite.fill != AmbientSource::none;
 }
 
@@ -65,10 +66,12 @@ void require_sound_composite(const Method& method) {
         if (!condition)
             throw MethodError(fmt::format("method '{}': composite.kind is \"demo\", {}", method.name, problem));
     };
-    require(method.ao.enabled && method.radiosity.enabled,
-            "which weighs its terms by ambient visibility and the confidence of radiosity; set ao.enabled and "
-            "radiosity.enabled to true, or composite.kind to \"physical\"");
-    require(method.radiosity.fill == AmbientSource::none,
+    require(method.ao.enabled,
+            "which weighs its terms by ambient visibility; set ao.enabled to true, or composite.kind to \"physical\"");
+    require(method.radiosity.enabled || method.composite.fill != AmbientSource::none,
+            "but without radiosity and ambient light there is nothing to weigh; set radiosity.enabled to true, or "
+            "composite.fill to \"ambient\", \"environment\" or \"probe\"");
+    require(!method.radiosity.enabled || method.radiosity.fill == AmbientSource::none,
             "which fills low confidence by itself; set composite.fill to what radiosity.fill is, and that to \"none\"");
     require(
         method.composite.ambient >= 0.0f && std::isfinite(method.composite.ambient),

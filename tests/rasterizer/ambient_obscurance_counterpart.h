@@ -32,27 +32,24 @@ inline bool step_along(const Layers& layers, Pixel pixel, int dx, int dy, glm::d
     return true;
 }
 
-inline Visibility ambient_visibility(const Layers& layers, const AmbientObscuranceSettings& settings,
-                                     const Quantities& quantities, Pixel pixel) {
+// Of the disc that taps fall into; 0 where nothing is seen.
+inline double radius_in_pixels(const Layers& layers, const AmbientObscuranceSettings& settings,
+                               const Quantities& quantities, Pixel pixel) {
+    const double depth = depth_at(layers, 0, pixel);
+    if (depth == 0.0) return 0.0;
+    return settings.spread_pixels > 0 ? settings.spread_pixels
+                                      : layers.view.pixels_per_metre() * quantities.ao_radius / depth;
+}
+
+// What the estimator makes of taps, all of which count in the mean; `result` says whether they are ambiguous.
+inline Visibility visibility_by_taps(const Layers& layers, const AmbientObscuranceSettings& settings,
+                                     const Quantities& quantities, Pixel pixel, const std::vector<Tap>& taps,
+                                     Visibility result = {}) {
     using Estimator = AmbientObscuranceEstimator;
     const Estimator estimator = settings.estimator;
+    const bool thesis = estimator == Estimator::nielsen2015;
     const double depth = depth_at(layers, 0, pixel), radius = quantities.ao_radius;
-    if (depth == 0.0) return {};
-    const double radius_pixels =
-        settings.spread_pixels > 0 ? settings.spread_pixels : layers.view.pixels_per_metre() * radius / depth;
-    if (radius_pixels < 1.0) return {};
-
-    Visibility result;
-    const bool demo = estimator == Estimator::g3d_demo, thesis = estimator == Estimator::nielsen2015;
-    const std::vector<Tap> taps = spiral_taps(layers,
-                                              {.pixel = pixel,
-                                               .radius_pixels = radius_pixels,
-                                               .samples = settings.samples,
-                                               .jitter = 32768,
-                                               .use_mip_chain = settings.use_mip_chain,
-                                               .mip_offset = settings.mip_offset,
-                                               .minimum_distance = demo ? 0.75 : 0.0},
-                                              result.ambiguous);
+    const double radius_pixels = radius_in_pixels(layers, settings, quantities, pixel);
     const glm::dvec3 centre = point_at(layers, 0, pixel);
     glm::dvec3 normal = vector_at(layers, layers.normal[0], pixel);
     if (settings.normals == ObscuranceNormals::face) {
@@ -109,7 +106,7 @@ inline Visibility ambient_visibility(const Layers& layers, const AmbientObscuran
         }
         sum += thesis ? both : largest;
     }
-    result.mean = sum / (thesis ? std::max(hits, 1) : settings.samples);
+    result.mean = sum / (thesis ? std::max<double>(hits, 1) : static_cast<double>(taps.size()));
     switch (estimator) {
         case Estimator::mara2016:
             result.visibility = 1.0 - settings.intensity * std::sqrt(std::numbers::pi * result.mean);
@@ -138,6 +135,43 @@ inline Visibility ambient_visibility(const Layers& layers, const AmbientObscuran
     }
     result.visibility = std::max(0.0, result.visibility);
     return result;
+}
+
+inline Visibility ambient_visibility(const Layers& layers, const AmbientObscuranceSettings& settings,
+                                     const Quantities& quantities, Pixel pixel) {
+    const double radius_pixels = radius_in_pixels(layers, settings, quantities, pixel);
+    if (radius_pixels < 1.0) return {};
+    Visibility result;
+    const std::vector<Tap> taps =
+        spiral_taps(layers,
+                    {.pixel = pixel,
+                     .radius_pixels = radius_pixels,
+                     .samples = settings.samples,
+                     .jitter = 32768,
+                     .use_mip_chain = settings.use_mip_chain,
+                     .mip_offset = settings.mip_offset,
+                     .minimum_distance = settings.estimator == AmbientObscuranceEstimator::g3d_demo ? 0.75 : 0.0},
+                    result.ambiguous);
+    return visibility_by_taps(layers, settings, quantities, pixel, taps, result);
+}
+
+// The limit of many taps: the mean over the disc by a fine grid in radius and angle, over both of which taps are spread
+// evenly.
+inline Visibility limit_of_many_taps(const Layers& layers, const AmbientObscuranceSettings& settings,
+                                     const Quantities& quantities, Pixel pixel) {
+    constexpr int steps = 200;
+    const double radius_pixels = radius_in_pixels(layers, settings, quantities, pixel);
+    std::vector<Tap> taps;
+    for (int i = 0; i < steps; ++i) {
+        for (int j = 0; j < steps; ++j) {
+            const double distance = radius_pixels * (i + 0.5) / steps,
+                         angle = 2.0 * std::numbers::pi * (j + 0.5) / steps;
+            const Pixel tap{pixel.x + static_cast<int>(std::floor(distance * std::cos(angle) + 0.5)),
+                            pixel.y + static_cast<int>(std::floor(distance * std::sin(angle) + 0.5))};
+            taps.push_back({tap, tap});
+        }
+    }
+    return visibility_by_taps(layers, settings, quantities, pixel, taps);
 }
 
 }  // namespace plumb::counterpart

@@ -171,6 +171,36 @@ TEST_P(AmbientObscuranceTest, ACornerIsDarkerTheCloserOneComes) {
     EXPECT_EQ(last, 1.0) << "1.2 m above the floor nothing is within the radius of 1 m";
 }
 
+// Estimators whose visibility is a mean of taps: of the others, the mean over seeds is not that of more taps.
+TEST_P(AmbientObscuranceTest, ConvergesToItsIntegralOverTheDisc) {
+    const counterpart::Layers layers = layers_of_patches(slanted_view(120, 90), room());
+    const Quantities quantities = ambient_visibility_within(3.0f);
+    AmbientObscuranceSettings settings{.estimator = Estimator::linear, .use_mip_chain = false};
+    const auto mean_error = [&](int samples, int seeds = 1) {
+        settings.samples = samples;
+        ScreenSpaceRun run(context(), layers, unblurred(settings), quantities);
+        const Image ao = mean_over_seeds(run, "ao", 1, seeds);
+        double error = 0.0, obscured = 0.0;
+        for (int y = 5; y < 90; y += 20) {
+            for (int x = 5; x < 120; x += 15) {
+                if (counterpart::radius_in_pixels(run.layers(), settings, quantities, {x, y}) < 1.0) continue;
+                const double expected =
+                    counterpart::limit_of_many_taps(run.layers(), settings, quantities, {x, y}).visibility;
+                error += std::abs(ao.at(x, 89 - y) - expected);
+                obscured += 1.0 - expected;
+            }
+        }
+        EXPECT_GT(obscured, 1.0) << "of 40 pixels";
+        return error / obscured;
+    };
+    const double few = mean_error(16), many = mean_error(1000), thousands = mean_error(1000, 4);
+    // As the taps of radiosity: N points miss edges by some N^(-3/4).
+    EXPECT_LT(many, 0.03) << "relative error of 1000 taps; of 16: " << few;
+    EXPECT_LT(many, few / 5.0) << few;
+    EXPECT_LT(thousands, 0.01) << "relative error of 4 seeds of 1000 taps; of one: " << many;
+    EXPECT_LT(thousands, many);
+}
+
 TEST_P(AmbientObscuranceTest, ASecondLayerDarkensWhatHidesBehindTheFirst) {
     // A wall with a slab 0.2 m before it, and between camera and slab a board that hides the slab and no more.
     const std::vector<Patch> patches = {{{-5.0f, -5.0f, -5.0f}, {10.0f, 0.0f, 0.0f}, {0.0f, 10.0f, 0.0f}},

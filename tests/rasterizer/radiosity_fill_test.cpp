@@ -194,6 +194,29 @@ TEST_P(RadiosityFillTest, TheDemosCompositeWeighsItsTerms) {
     }
 }
 
+TEST_P(RadiosityFillTest, TheDemosCompositeWithoutRadiosityTakesAllFromAmbientLight) {
+    Method method;
+    method.composite = {.kind = CompositeKind::demo, .fill = AmbientSource::ambient, .ambient = 0.3f};
+    method.radiosity.enabled = false;
+    const Frame frame = render(context(), lit_corner(), corner_view(),
+                               {"total", "direct", "emission", "ao", "depth", "albedo"}, method);
+    int brighter = 0;
+    for (int y = 0; y < frame.height(); ++y) {
+        for (int x = 0; x < frame.width(); ++x) {
+            const auto plane = [&](const char* name) { return vector_at(frame.plane(name), x, y); };
+            if (std::isinf(frame.plane("depth").at(x, y))) continue;
+            const double visibility = 0.95 * frame.plane("ao").at(x, y) + 0.05;
+            const glm::dvec3 expected =
+                plane("emission") + (0.35 + 0.65 * visibility) * plane("direct") + visibility * 0.3 * plane("albedo");
+            // `total` is kept as half floats: 5e-4 of the value.
+            ASSERT_LT(glm::length(plane("total") - expected), 1e-3 * glm::length(expected) + 1e-6)
+                << "pixel (" << x << ", " << y << "): " << plane("total").x << ", expected " << expected.x;
+            brighter += plane("total").x > plane("direct").x;
+        }
+    }
+    EXPECT_GT(brighter, 50);
+}
+
 TEST_P(RadiosityFillTest, TheDemosCompositeIsRefusedWithoutWhatItReads) {
     const auto error_of = [&](const Method& method) -> std::string {
         try {
@@ -208,7 +231,10 @@ TEST_P(RadiosityFillTest, TheDemosCompositeIsRefusedWithoutWhatItReads) {
     EXPECT_EQ(error_of(method), "no error");
     Method changed = method;
     changed.ao.enabled = false;
-    EXPECT_THAT(error_of(changed), testing::HasSubstr("set ao.enabled and radiosity.enabled to true"));
+    EXPECT_THAT(error_of(changed), testing::HasSubstr("set ao.enabled to true"));
+    changed = method;
+    changed.radiosity.enabled = false;
+    EXPECT_THAT(error_of(changed), testing::HasSubstr("set radiosity.enabled to true, or composite.fill"));
     changed = method;
     changed.radiosity.fill = AmbientSource::ambient;
     EXPECT_THAT(error_of(changed), testing::HasSubstr("set composite.fill to what radiosity.fill is"));

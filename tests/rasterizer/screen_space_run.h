@@ -35,7 +35,6 @@ public:
         for (int layer = 0; layer < 2; ++layer) {
             upload(albedo, layer, Image(layers_.width(), layers_.height(), 3, 0.5f));
         }
-        view_uniforms_.update(layers_.view, layers_.view, method_.gbuffer.guard_band);
         std::vector<PassDeclaration> declarations = {
             {"given",
              {},
@@ -61,8 +60,9 @@ public:
     }
 
     // Runs all passes and returns a plane, guard band included.
-    Image render(const std::string& plane, int channels, int layer = 0, int level = 0) {
+    Image render(const std::string& plane, int channels, int layer = 0, int level = 0, std::uint32_t seed = 0) {
         context_.make_current();
+        view_uniforms_.update(layers_.view, layers_.view, method_.gbuffer.guard_band, nullptr, 0, pattern_shift(seed));
         view_uniforms_.bind();
         for (const std::unique_ptr<Pass>& pass : passes_) {
             pass->execute({layers_.view, layers_.view, nullptr});
@@ -86,6 +86,17 @@ private:
     ViewUniforms view_uniforms_;
     std::vector<std::unique_ptr<Pass>> passes_;
 };
+
+// Of so many patterns of taps.
+inline Image mean_over_seeds(ScreenSpaceRun& run, const std::string& plane, int channels, int seeds) {
+    Image mean = run.render(plane, channels);
+    for (int seed = 1; seed < seeds; ++seed) {
+        const Image image = run.render(plane, channels, 0, 0, static_cast<std::uint32_t>(seed));
+        for (std::size_t i = 0; i < mean.values().size(); ++i) mean.values()[i] += image.values()[i];
+    }
+    for (float& value : mean.values()) value /= static_cast<float>(seeds);
+    return mean;
+}
 
 // A flat, rectangular surface, in camera space.
 struct Patch {
