@@ -5,7 +5,9 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <map>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -15,6 +17,9 @@
 #include "frames/atomic_file.h"
 #include "frames/image_error.h"
 #include "frames/picture.h"
+#include "rasterizer/pass_plan.h"
+#include "rasterizer/passes.h"
+#include "scenes/builtin.h"
 #include "scenes/scene_error.h"
 #include "tests/message_of.h"
 #include "tests/temporary_folder.h"
@@ -67,6 +72,36 @@ TEST(Reproductions, EveryOneCanBeReadAndSaysWhereItStands) {
         claims += reproduction.presentation.claims.size();
     }
     EXPECT_GE(claims, 24u);
+}
+
+// In the scenes that are part of the program; as a pipeline does, but without OpenGL.
+TEST(Reproductions, NoMethodIsRefusedInItsScenes) {
+    std::map<std::string, Scene> scenes;
+    for (const std::string& name : builtin_scene_names()) scenes.emplace(name, make_builtin_scene(name));
+    int planned = 0;
+    for (const std::string& name : reproduction_names()) {
+        const Reproduction reproduction = load_reproduction(name);
+        if (!reproduction.drawings.empty() ||
+            kind_of(reproduction.table, reproduction.file) != ExperimentKind::comparison)
+            continue;
+        const Experiment experiment = parse_experiment(reproduction.table, reproduction.file);
+        for (const ExperimentScene& entry : experiment.scenes) {
+            const auto scene = scenes.find(entry.scene);
+            if (scene == scenes.end()) continue;
+            for (const std::string& plane : experiment.planes) {
+                const Quantities quantities = quantities_of(experiment, entry, plane);
+                for (const Method& method : experiment.methods) {
+                    SCOPED_TRACE(fmt::format("{} / {} / {} / {}", name, entry.scene, plane, method.name));
+                    EXPECT_NO_THROW({
+                        const Method in_scene = method_in_scene(method, entry, name);
+                        plan_passes(declare_passes(scene->second, in_scene, quantities), quantities.planes);
+                    });
+                    ++planned;
+                }
+            }
+        }
+    }
+    EXPECT_GT(planned, 100);
 }
 
 TEST(Reproductions, AMisspeltNameIsToldWithTheNearest) {
