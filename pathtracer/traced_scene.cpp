@@ -51,6 +51,12 @@ PLUMBLINE_INLINE PointGeometry point_geometry(const TracedTriangle& triangle, fl
     return point;
 }
 
+// What Embree reads of every ray but never changes.
+template <int width, typename Packet>
+void set_constants(Packet& packet) {
+    for (int i = 0; i < width; ++i) packet.mask[i] = 0xffffffffu, packet.id[i] = 0, packet.flags[i] = 0;
+}
+
 // Rays `first` and following into a packet; lanes beyond the last ray are not valid.
 template <int width, typename Packet>
 void copy_rays(const RayBatch& rays, int first, Packet& packet, std::array<int, width>& valid) {
@@ -60,10 +66,7 @@ void copy_rays(const RayBatch& rays, int first, Packet& packet, std::array<int, 
     copy(packet.org_x, rays.origin.x), copy(packet.org_y, rays.origin.y), copy(packet.org_z, rays.origin.z);
     copy(packet.dir_x, rays.direction.x), copy(packet.dir_y, rays.direction.y), copy(packet.dir_z, rays.direction.z);
     copy(packet.tnear, rays.nearest), copy(packet.tfar, rays.farthest), copy(packet.time, rays.time);
-    for (int i = 0; i < width; ++i) {
-        valid[i] = first + i < rays.count ? -1 : 0;
-        packet.mask[i] = 0xffffffffu, packet.id[i] = 0, packet.flags[i] = 0;
-    }
+    for (int i = 0; i < width; ++i) valid[i] = first + i < rays.count ? -1 : 0;
 }
 
 // Starts to fetch the texels that Texture::sample will read at `uv`. Coordinates beyond the texture are taken as
@@ -174,9 +177,10 @@ void TracedScene::intersect(const RayBatch& rays, HitBatch& hits, const OracleLa
     const RTCScene scene = scene_for(layers);
     // Eight rays together find the very hits that each finds alone, some tenth sooner (benchmark `packets`).
     constexpr int width = 8;
+    RTCRayHit8 packet;
+    set_constants<width>(packet.ray);
     for (int first = 0; first < rays.count; first += width) {
         alignas(32) std::array<int, width> valid;
-        RTCRayHit8 packet;
         copy_rays<width>(rays, first, packet.ray, valid);
         std::fill_n(packet.hit.geomID, width, RTC_INVALID_GEOMETRY_ID);
         std::fill_n(packet.hit.instID[0], width, RTC_INVALID_GEOMETRY_ID);
@@ -194,9 +198,10 @@ void TracedScene::occluded(const RayBatch& rays, Lanes<int>& blocked, const Orac
     EmbreeQuery query = query_for(layers);
     const RTCScene scene = scene_for(layers);
     constexpr int width = 16;
+    RTCRay16 packet;
+    set_constants<width>(packet);
     for (int first = 0; first < rays.count; first += width) {
         alignas(64) std::array<int, width> valid;
-        RTCRay16 packet;
         copy_rays<width>(rays, first, packet, valid);
         query.occluded(scene, valid.data(), packet);
         // Embree sets minus infinity where something is in the way.
