@@ -27,7 +27,7 @@ constexpr double share_of_references = 0.7;  // of a scene's time, for the progr
 Image settled_plane(Pipeline& pipeline, const std::string& plane, int frames, const FrameRequest& request) {
     pipeline.forget();
     for (int frame = 1; frame < frames; ++frame) pipeline.time_passes(request);
-    return std::move(pipeline.render(request).frame.plane(plane));
+    return pipeline.render(request).frame.plane(plane);
 }
 
 std::ptrdiff_t place_of(const std::vector<std::string>& names, const std::string& name) {

@@ -24,7 +24,7 @@ Region left_half() {
     for (int y = 0; y < height; ++y) {
         for (int x = 0; x < width / 2; ++x) region.mask.at(x, y) = 1.0f;
     }
-    region.pixels = width / 2 * height;
+    region.pixels = static_cast<std::size_t>(width / 2) * height;
     return region;
 }
 
@@ -54,7 +54,7 @@ TEST(RowMeasurement, OfSeedsIsTheMeanWithStudentsIntervalOverThem) {
     EXPECT_GT(row.mse_upper, mean);
     ASSERT_EQ(row.regions.size(), 1u);
     EXPECT_NEAR(row.regions[0].mse, (a + b) / 3.0, 1e-7);
-    EXPECT_EQ(row.regions[0].pixels, static_cast<std::size_t>(width / 2 * height));
+    EXPECT_EQ(row.regions[0].pixels, static_cast<std::size_t>(width / 2) * height);
 }
 
 TEST(RowMeasurement, OfOnePictureHasNoIntervalOverSeeds) {

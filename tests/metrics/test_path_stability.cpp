@@ -118,11 +118,11 @@ TEST(PathStability, OfRegionsIsThatOfEachPixelsOwnFrame) {
     const auto regions = stability.of_regions();
     ASSERT_EQ(regions.size(), 2u);
     EXPECT_NEAR(regions.at("border").flicker.value, 0.25, float32);
-    EXPECT_EQ(regions.at("border").pixels, std::size_t{7 * wall_width});
+    EXPECT_EQ(regions.at("border").pixels, 7 * std::size_t{wall_width});
     // Of what grows by d a frame over 8 frames: 6 d^2.
     EXPECT_NEAR(regions.at("border").temporal_variance.value, 6.0 * 0.0625, 1e-5);
     EXPECT_NEAR(regions.at("silhouettes").flicker.value, 0.0, float32);
-    EXPECT_EQ(regions.at("silhouettes").pixels, std::size_t{5 * wall_width});
+    EXPECT_EQ(regions.at("silhouettes").pixels, 5 * std::size_t{wall_width});
     EXPECT_TRUE(std::isnan(regions.at("silhouettes").temporal_variance.value))
         << "it was not there in the eighth frame";
     // One row of so many flickers.
