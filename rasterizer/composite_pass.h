@@ -8,11 +8,11 @@
 //                c = clamp(2 (confidence - 0.35) + 0.35, 0, 1)      of the radiosity, which also boosts `indirect`
 //
 // Terms of stages that are not enabled are left out; without radiosity c is 0, and ambient light stands for all that
-// bounces: what a static light probe alone would give. E_ambient is what CompositeSettings::fill says (ambient_light.h),
-// or nothing. `demo` is no physical sum, in four places: visibility dims direct light; it dims indirect light, which
-// came from what is near; confidence, which only counts taps, dims indirect light; and ambient light goes on where
-// indirect light was found. Where the scene has an environment, `direct` holds its light times ao already, and a fill
-// from it counts it twice: the demo keeps it in the ambient term alone.
+// bounces: what a static light probe alone would give. E_ambient is what CompositeSettings::fill says
+// (ambient_light.h), or nothing. `demo` is no physical sum, in four places: visibility dims direct light; it dims
+// indirect light, which came from what is near; confidence, which only counts taps, dims indirect light; and ambient
+// light goes on where indirect light was found. Where the scene has an environment, `direct` holds its light times ao
+// already, and a fill from it counts it twice: the demo keeps it in the ambient term alone.
 //   Source of demo: the code that Mara et al. ship with G3D.
 #pragma once
 
