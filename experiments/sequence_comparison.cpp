@@ -192,6 +192,7 @@ std::vector<MeasuredThing> SequenceComparison::whole() const {
             for (const auto& [measure, value] : thing.measures) values[key][measure].push_back(value);
         }
     }
+    std::map<std::string, std::map<std::string, PathStabilityResult>> of_regions;  // by plane
     for (MeasuredThing& thing : things) {
         const std::string key = thing.full_name();
         auto& of_thing = values.at(key);
@@ -207,8 +208,9 @@ std::vector<MeasuredThing> SequenceComparison::whole() const {
         if (thing.region.empty()) {
             add_measures(thing, stability->second.result());
         } else {
-            const auto of_regions = stability->second.of_regions();
-            if (const auto region = of_regions.find(thing.region); region != of_regions.end())
+            auto [regions, is_new] = of_regions.try_emplace(thing.name);
+            if (is_new) regions->second = stability->second.of_regions();
+            if (const auto region = regions->second.find(thing.region); region != regions->second.end())
                 add_measures(thing, region->second);
         }
     }

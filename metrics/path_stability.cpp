@@ -89,23 +89,26 @@ std::optional<Flicker> PathStability::add(const Frame& method, const Frame& trut
     for (const Region& region : regions) require_mask_fits(region.mask, now.method);
     if (past_.size() < 2) return std::nullopt;
     const BlockGrid grid(now.method.width(), now.method.height(), settings_.flicker.bootstrap.block_size);
-    const Flicker of_frame = add_change(grid, mask, whole_);
-    for (const Region& region : regions) add_change(grid, &region.mask, regions_[region.name]);
+    const auto change_within = [&](const Image* within) {
+        return sum_changes(past_[past_.size() - 2], now, grid, settings_.flicker.tolerance, within);
+    };
+    ChangeSums change = change_within(mask);
+    const Flicker of_frame = flicker_of(change, settings_.flicker.bootstrap);
+    add_change(std::move(change), grid, mask, whole_);
+    for (const Region& region : regions)
+        add_change(change_within(&region.mask), grid, &region.mask, regions_[region.name]);
     if (past_.size() == static_cast<std::size_t>(settings_.window)) past_.pop_front();
     return of_frame;
 }
 
-// The change from the frame before, and where enough frames have passed the variance.
-Flicker PathStability::add_change(const BlockGrid& grid, const Image* mask, Sums& sums) const {
-    ChangeSums change = sum_changes(past_[past_.size() - 2], past_.back(), grid, settings_.flicker.tolerance, mask);
-    const Flicker of_frame = flicker_of(change, settings_.flicker.bootstrap);
+// Also the variance, where enough frames have passed.
+void PathStability::add_change(ChangeSums change, const BlockGrid& grid, const Image* mask, Sums& sums) const {
     sums.error.add(std::move(change.error));
     sums.method.add(std::move(change.method));
     sums.truth.add(std::move(change.truth));
     sums.noise.add(std::move(change.noise));
     sums.pixels += change.pixels, sums.not_visible += change.not_visible, sums.non_finite += change.non_finite;
     if (past_.size() == static_cast<std::size_t>(settings_.window)) sums.variance.add(sum_variances(grid, mask));
-    return of_frame;
 }
 
 std::vector<BlockSum> PathStability::sum_variances(const BlockGrid& grid, const Image* mask) const {

@@ -70,7 +70,7 @@ private:
         BlockSeries error, method, truth, noise, variance;
         std::size_t pixels = 0, not_visible = 0, non_finite = 0;
     };
-    Flicker add_change(const BlockGrid& grid, const Image* mask, Sums& sums) const;
+    void add_change(ChangeSums change, const BlockGrid& grid, const Image* mask, Sums& sums) const;
     std::vector<BlockSum> sum_variances(const BlockGrid& grid, const Image* mask) const;
     PathStabilityResult result_of(const Sums& sums) const;
 

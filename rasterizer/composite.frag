@@ -1,7 +1,8 @@
 // The sum of all terms, physical or as the demo of Mara et al. weighs them; composite_pass.h has the formulas.
 //
 // Defines: the texture units of the planes that there are: DIRECT, EMISSION, INDIRECT, REFLECTION; DEMO, and then
-// VISIBILITY, with radiosity CONFIDENCE, and where there is ambient light DEPTH, NORMAL, ALBEDO and those of ambient_light.glsl.
+// VISIBILITY, with radiosity CONFIDENCE, and where there is ambient light DEPTH, NORMAL, ALBEDO and those of
+// ambient_light.glsl.
 
 #ifdef DEPTH
 #include "ambient_light.glsl"
