@@ -35,6 +35,12 @@ LightSample from_point(const glm::vec3& receiver, const glm::vec3& position, con
     return sample;
 }
 
+// A light that the receiver's bulge sees, told for the receiver.
+LightSample risen(const LightReceiver& receiver, LightSample sample) {
+    sample.rise = receiver.bulge;
+    return sample;
+}
+
 // Mean luminance over the texels of a texture that multiplies an emission, so that a texture with a few bright spots
 // counts for what it emits.
 double mean_emission(const Scene& scene, const Material& material) {
@@ -180,7 +186,15 @@ LightTable::Emitter LightTable::moved(const Emitter& emitter, float time) const 
     return there;
 }
 
+// Which point of the lights is sampled depends on the numbers alone, so that the bulge looks at the point that the
+// origin's face hides, and each point is seen from one of the two.
 LightSample LightTable::sample_extended(const LightReceiver& receiver, double x, float y) const {
+    const LightSample sample = sample_extended_from_origin(receiver, x, y);
+    if (!receiver.sees_from_bulge(sample.direction)) return sample;
+    return risen(receiver, sample_extended_from_origin(receiver.bulging(), x, y));
+}
+
+LightSample LightTable::sample_extended_from_origin(const LightReceiver& receiver, double x, float y) const {
     std::size_t index = extended_.sample(x);
     const glm::vec2 u(extended_.within(x, index), y);
     if (index < emitters_.size()) {
@@ -195,11 +209,11 @@ LightSample LightTable::sample_extended(const LightReceiver& receiver, double x,
 // Weighted reservoir sampling: each light replaces the one kept so far with probability weight / (sum so far), and the
 // random number is stretched to be used again.
 LightSample LightTable::sample_without_extent(const LightReceiver& receiver, float pick) const {
-    if (lights_without_extent_ == 1) return light_without_extent(0, receiver.origin);
+    if (lights_without_extent_ == 1) return light_without_extent(0, receiver);
     LightSample kept;
     double sum = 0.0, kept_weight = 0.0, u = pick;
     for (std::size_t i = 0; i < lights_without_extent_; ++i) {
-        const LightSample light = light_without_extent(i, receiver.origin);
+        const LightSample light = light_without_extent(i, receiver);
         const double weight = luminance(light.radiance) * std::max(0.0f, glm::dot(receiver.normal, light.direction));
         if (!(weight > 0.0)) continue;
         sum += weight;
@@ -219,9 +233,9 @@ LightSample LightTable::sample_emitter(const Emitter& emitter, const LightReceiv
     const TriangleSample chosen = sample_emitting_triangle(emitter.corners.a, emitter.corners.b, emitter.corners.c,
                                                            emitter.normal, emitter.area_over_probability, emitter.error,
                                                            emitter.two_sided ? 1.0f : 0.0f, receiver.origin, u);
-    if (!(chosen.inverse_density > 0.0f)) return {};
     LightSample sample;
     sample.direction = chosen.direction, sample.shadow_ray = chosen.shadow_ray;
+    if (!(chosen.inverse_density > 0.0f)) return sample;
     sample.farthest = 1.0f;
     sample.density = 1.0f / chosen.inverse_density;
     sample.radiance = chosen.inverse_density * emitter.emission;
@@ -238,9 +252,7 @@ void LightTable::sample_extended(const VertexBatch& receivers, const Lanes<std::
                                  LightLanes& samples) const {
     if (!only_plain_emitters_) {
         for (int i = 0; i < receivers.count; ++i) {
-            const LightReceiver receiver{receivers.ray_origin.get(i), receivers.shading_normal.get(i),
-                                         receivers.time[i]};
-            samples.set(i, sample_extended(receiver, 0x1p-32 * x[i], y[i]));
+            samples.set(i, sample_extended(receivers.receiver(i), 0x1p-32 * x[i], y[i]));
         }
         return;
     }
@@ -266,8 +278,13 @@ void LightTable::sample_extended(const VertexBatch& receivers, const Lanes<std::
                                      back_emits[i], receivers.ray_origin.get(i), {within[i], y[i]});
         samples.direction.set(i, at.direction), samples.shadow_ray.set(i, at.shadow_ray);
         samples.radiance.set(i, at.inverse_density * emission.get(i));
-        samples.farthest[i] = 1.0f;
+        samples.rise[i] = 0.0f, samples.farthest[i] = 1.0f;
         samples.density[i] = at.inverse_density > 0.0f ? 1.0f / at.inverse_density : 0.0f;
+    }
+    for (int i = 0; i < receivers.count; ++i) {
+        const LightReceiver receiver = receivers.receiver(i);
+        if (!receiver.sees_from_bulge(samples.direction.get(i))) continue;
+        samples.set(i, sample_extended(receiver, 0x1p-32 * x[i], y[i]));
     }
 }
 
@@ -327,18 +344,24 @@ glm::vec3 LightTable::weighted_background(const glm::vec3& direction, float dens
     return sum;
 }
 
-LightSample LightTable::light_without_extent(std::size_t index, const glm::vec3& receiver) const {
+LightSample LightTable::light_without_extent(std::size_t index, const LightReceiver& receiver) const {
+    const LightSample sample = light_without_extent_from(receiver.origin, index);
+    if (!receiver.sees_from_bulge(sample.direction)) return sample;
+    return risen(receiver, light_without_extent_from(receiver.bulging().origin, index));
+}
+
+LightSample LightTable::light_without_extent_from(const glm::vec3& origin, std::size_t index) const {
     const Scene& scene = scene_.scene();
     if (index < scene.point_lights.size()) {
         const PointLight& light = scene.point_lights[index];
-        LightSample sample = from_point(receiver, light.position, light.attenuation);
+        LightSample sample = from_point(origin, light.position, light.attenuation);
         sample.radiance *= light.intensity;
         return sample;
     }
     index -= scene.point_lights.size();
     if (index < scene.spot_lights.size()) {
         const SpotLight& light = scene.spot_lights[index];
-        LightSample sample = from_point(receiver, light.position, light.attenuation);
+        LightSample sample = from_point(origin, light.position, light.attenuation);
         sample.radiance *= light.intensity * spot_attenuation(light, -glm::dot(light.direction, sample.direction));
         return sample;
     }

@@ -49,7 +49,7 @@ public:
 
     // Lights without extent, one by one, for exact sums; and one of them for the sum.
     std::size_t lights_without_extent() const { return lights_without_extent_; }
-    LightSample light_without_extent(std::size_t index, const glm::vec3& receiver) const;
+    LightSample light_without_extent(std::size_t index, const LightReceiver& receiver) const;
     LightSample sample_without_extent(const LightReceiver& receiver, float pick) const;
 
 private:
@@ -71,6 +71,9 @@ private:
     void find_emitters(std::vector<double>& powers);
     void find_suns(std::vector<double>& powers);
     Emitter moved(const Emitter& emitter, float time) const;
+    // Of all that the receiver's origin sees, its face apart.
+    LightSample sample_extended_from_origin(const LightReceiver& receiver, double x, float y) const;
+    LightSample light_without_extent_from(const glm::vec3& origin, std::size_t index) const;
     LightSample sample_emitter(const Emitter& emitter, const LightReceiver& receiver, glm::vec2 u) const;
     LightSample sample_sun(const Sun& sun, glm::vec2 u) const;
     LightSample sample_environment(const glm::vec3& normal, glm::vec2 u) const;

@@ -47,8 +47,13 @@ struct VertexBatch : SurfaceLanes {
         ray_origin.set(to, other.ray_origin.get(from));
         geometric_normal.set(to, other.geometric_normal.get(from));
         shading_normal.set(to, other.shading_normal.get(from));
+        bulge[to] = other.bulge[from];
         albedo.set(to, other.albedo.get(from));
         throughput.set(to, other.throughput.get(from));
+    }
+
+    LightReceiver receiver(int lane) const {
+        return {ray_origin.get(lane), shading_normal.get(lane), geometric_normal.get(lane), bulge[lane], time[lane]};
     }
 
     // Takes over lane `from` of `other`.
@@ -67,6 +72,7 @@ struct VertexBatch : SurfaceLanes {
         ray_origin.fill(begin, end, ray_origin.get(begin));
         geometric_normal.fill(begin, end, geometric_normal.get(begin));
         shading_normal.fill(begin, end, shading_normal.get(begin));
+        bulge.fill(begin, end, bulge[begin]);
         albedo.fill(begin, end, albedo.get(begin));
         throughput.fill(begin, end, throughput.get(begin));
         is_plain.fill(begin, end, is_plain[begin]);
@@ -90,7 +96,9 @@ struct ScatteredRays {
     Lanes<int> vertex;     // lane of the vertex that each leaves
     VectorLanes weight;    // BSDF times cosine over density
     Lanes<float> density;  // per solid angle; 0: nothing else finds this direction
-    Lanes<int> ended;      // lanes whose direction led into their own surface
+    // From a bulge, where the ray passes the plane of the face: what lies before it the face itself sees. Else 0.
+    Lanes<float> face_plane;
+    Lanes<int> ended;  // lanes whose direction led into their own surface
     int ended_count = 0;
     bool all_leave = false;  // every vertex's ray is in its own lane
 
@@ -98,11 +106,12 @@ struct ScatteredRays {
         rays.count = ended_count = 0;
         all_leave = false;
     }
-    void add(int lane, const glm::vec3& origin, const glm::vec3& direction, float time, const glm::vec3& with_weight,
-             float with_density) {
-        vertex[rays.count] = lane, density[rays.count] = with_density;
-        weight.set(rays.count, with_weight);
-        rays.add(origin, direction, infinite_distance, time);
+    // Makes what stands in lane `from` the next ray, which is never behind that lane.
+    void keep(int from, const glm::vec3& origin, float time) {
+        const int to = rays.count;
+        vertex[to] = from, density[to] = density[from], face_plane[to] = face_plane[from];
+        weight.set(to, weight.get(from));
+        rays.add(origin, rays.direction.get(from), infinite_distance, time);
     }
 };
 
@@ -110,6 +119,11 @@ struct ScatteredRays {
 struct ShadowRays {
     RayBatch rays;
     Lanes<int> vertex;
+
+    void add(int lane, const glm::vec3& origin, const glm::vec3& direction, float reach, float time) {
+        vertex[rays.count] = lane;
+        rays.add(origin, direction, reach, time);
+    }
 };
 
 // Room for what is passed from step to step, so that none of it is made anew for every batch.
@@ -117,7 +131,7 @@ struct PathWorkspace {
     VertexBatch starts, vertices, next;
     LightLanes lights;
     ScatteredRays scattered;
-    ShadowRays shadow;
+    ShadowRays shadow, to_bulges;
     HitBatch hits;
     MetRays met;
 };

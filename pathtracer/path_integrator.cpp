@@ -24,6 +24,7 @@ glm::vec3 PathIntegrator::add_start(const SurfacePoint& x, const glm::vec3& dire
     batch.ray_origin.set(lane, x.ray_origin);
     batch.geometric_normal.set(lane, x.geometric_normal);
     batch.shading_normal.set(lane, x.shading_normal);
+    batch.bulge[lane] = x.bulge;
     batch.throughput.set(lane, glm::vec3(1.0f));
     batch.is_plain[lane] = !x.specular.has_lobe() && !x.specular.is_transparent();
     batch.all_plain &= batch.is_plain[lane] != 0;
@@ -83,53 +84,72 @@ float PathIntegrator::counted(Start start, float distance) const {
                                    : evaluate_falloff(plan_.reflection_falloff, distance, plan_.reflection_radius);
 }
 
-// Draws the direction in which each path leaves its vertex.
-void PathIntegrator::scatter(const VertexBatch& vertices, int vertex, Start start, ScatteredRays& scattered) const {
+// Draws the direction in which each path leaves its vertex, with what it counts; weight 0: it does not.
+void PathIntegrator::draw_directions(const VertexBatch& vertices, int vertex, Start start, ScatteredRays& scattered,
+                                     Lanes<std::uint8_t>& passes) const {
     const bool specular_start = start == Start::specular, leaves_diffusely = vertex == 0 && !specular_start;
     Lanes<float> x, y;
-    Lanes<int> leaves;
     sample_points(vertices.samples, vertices.count, path_dimension(vertex, specular_start, VertexUse::next_direction),
                   x, y);
-    RayBatch& rays = scattered.rays;
-    const int count = vertices.count, end = whole_groups(count);
-    for (int i = 0; i < end; ++i) {
+    const int count = vertices.count;
+    for (int i = 0; i < whole_groups(count); ++i) {
         const glm::vec3 normal = vertices.shading_normal.get(i);
         const glm::vec3 direction = sample_cosine_hemisphere(normal, {x[i], y[i]});
-        rays.direction.set(i, direction);
+        scattered.rays.direction.set(i, direction);
         scattered.density[i] = glm::dot(normal, direction) * glm::one_over_pi<float>();
-        leaves[i] = glm::dot(vertices.geometric_normal.get(i), direction) > 0.0f ? 1 : 0;
+        scattered.weight.set(i, vertices.albedo.get(i));
     }
-    const auto leaving = std::count(leaves.begin(), leaves.begin() + count, 1);
-    scattered.clear();
-    if (leaving == count && (leaves_diffusely || vertices.all_plain)) {
-        scattered.all_leave = true;
-        for (int i = 0; i < end; ++i) {
-            scattered.vertex[i] = i;
-            scattered.weight.set(i, vertices.albedo.get(i));
-            rays.set(i, vertices.ray_origin.get(i), rays.direction.get(i), infinite_distance, vertices.time[i]);
-        }
-        if (leaves_diffusely) scattered.weight.fill(0, count, glm::vec3(1.0f));
-        rays.count = count;
-        return;
-    }
-    // Rays move to lanes before those that they were drawn in, never behind.
-    for (int i = 0; i < count; ++i) {
-        if (leaves_diffusely || vertices.is_plain[i]) {
-            if (leaves[i] != 0) {
-                scattered.add(i, vertices.ray_origin.get(i), rays.direction.get(i), vertices.time[i],
-                              leaves_diffusely ? glm::vec3(1.0f) : vertices.albedo.get(i), scattered.density[i]);
-            } else {
-                scattered.ended[scattered.ended_count++] = i;
-            }
-            continue;
-        }
+    passes.fill(0, count, 0);
+    if (leaves_diffusely) scattered.weight.fill(0, count, glm::vec3(1.0f));
+    for (int i = 0; i < count && !leaves_diffusely && !vertices.all_plain; ++i) {
+        if (vertices.is_plain[i]) continue;
         const SampleIndex index = vertices.samples.get(i);
         const float pick = sobol_point(index, mix_word(path_dimension(vertex, specular_start, VertexUse::lobe_pick))).x;
         const ScatterSample sample = scattering(vertices, i, vertex).sample(pick, {x[i], y[i]});
-        const bool outwards = glm::dot(vertices.geometric_normal.get(i), sample.direction) > 0.0f;
-        if ((!outwards && !sample.passes) || sample.weight == glm::vec3(0.0f)) continue;
-        scattered.add(i, sample.passes ? vertices.specular[i].far_side : vertices.ray_origin.get(i), sample.direction,
-                      vertices.time[i], sample.weight, sample.density);
+        scattered.rays.direction.set(i, sample.direction);
+        scattered.weight.set(i, sample.weight);
+        scattered.density[i] = sample.density;
+        passes[i] = sample.passes ? 1 : 0;
+    }
+}
+
+// Sends each path on its way.
+void PathIntegrator::scatter(const VertexBatch& vertices, int vertex, Start start, PathWorkspace& workspace,
+                             int& ray_count) const {
+    ScatteredRays& scattered = workspace.scattered;
+    RayBatch& rays = scattered.rays;
+    Lanes<std::uint8_t> passes;
+    draw_directions(vertices, vertex, start, scattered, passes);
+    Lanes<float> leaves, rise;
+    const int count = vertices.count, end = whole_groups(count);
+    for (int i = 0; i < end; ++i) {
+        const glm::vec3 normal = vertices.geometric_normal.get(i), weight = scattered.weight.get(i);
+        const float outwards = glm::dot(normal, rays.direction.get(i));
+        rise[i] = outwards > 0.0f || passes[i] != 0 ? 0.0f : vertices.bulge[i];
+        const bool open = outwards > 0.0f || passes[i] != 0 || rise[i] > 0.0f;
+        leaves[i] = open && weight.x + weight.y + weight.z > 0.0f ? 1.0f : 0.0f;
+        const float height = rise[i] * glm::dot(normal, vertices.shading_normal.get(i));
+        scattered.face_plane[i] = rise[i] > 0.0f ? height / -outwards : 0.0f;
+    }
+    close_hidden_bulges(vertices, rise, workspace.to_bulges, leaves, ray_count);
+    const auto leaving = std::count(leaves.begin(), leaves.begin() + count, 1.0f);
+    scattered.clear();
+    if (leaving == count && std::count(passes.begin(), passes.begin() + count, 1) == 0) {
+        scattered.all_leave = true;
+        for (int i = 0; i < end; ++i) {
+            scattered.vertex[i] = i;
+            rays.set(i, vertices.origin(i, rise[i]), rays.direction.get(i), infinite_distance, vertices.time[i]);
+        }
+        rays.count = count;
+        return;
+    }
+    for (int i = 0; i < count; ++i) {
+        if (leaves[i] == 0.0f) {
+            scattered.ended[scattered.ended_count++] = i;
+            continue;
+        }
+        scattered.keep(i, passes[i] != 0 ? vertices.specular[i].far_side : vertices.origin(i, rise[i]),
+                       vertices.time[i]);
     }
 }
 
@@ -194,9 +214,10 @@ void PathIntegrator::arrive(const VertexBatch& from, int vertex, Start start, bo
     }
     const bool limited = is_limited(start, vertex);
     const auto counts = [&](int j) { return limited ? counted(start, hits.distance[met.ray[j]]) : 1.0f; };
+    const auto face_sees = [&](int j) { return hits.distance[met.ray[j]] < scattered.face_plane[met.ray[j]]; };
     for (int j = 0; j < met.count && looks_for_emitters; ++j) {
         const glm::vec3 emission = next.emission.get(j);
-        if (emission == glm::vec3(0.0f)) continue;
+        if (emission == glm::vec3(0.0f) || face_sees(j)) continue;
         const int i = met.ray[j];
         const float weight = lights_.emission_weight(hits.get(i), next.geometric_normal.get(j), rays.direction.get(i),
                                                      scattered.density[i], rays.time[i]);
@@ -210,7 +231,7 @@ void PathIntegrator::arrive(const VertexBatch& from, int vertex, Start start, bo
     int count = 0;
     for (int j = 0; j < met.count; ++j) {
         const float share = counts(j);
-        if (!(share > 0.0f)) continue;
+        if (!(share > 0.0f) || face_sees(j)) continue;
         glm::vec3 throughput = next.throughput.get(j) * share;
         if (next.albedo.get(j) == glm::vec3(0.0f) && scene_.is_plain(hits.instance[met.ray[j]])) continue;
         if (!survives_roulette(next.samples.get(j), vertex + 1, start, throughput)) continue;
@@ -241,7 +262,7 @@ void PathIntegrator::follow(const VertexBatch& starts, Start start, PathWorkspac
         const bool tests_visibility = diffuse_start && k == 0 && plan_.ao;
         if (!looks_for_emitters && !goes_on && !tests_visibility) return;
 
-        scatter(*vertices, k, start, scattered);
+        scatter(*vertices, k, start, workspace, estimate.rays);
         const float nearest_visibility = 1.0f - obscurance(0.0f);
         if (tests_visibility) {
             for (int i = 0; i < scattered.ended_count; ++i) {

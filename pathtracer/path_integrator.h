@@ -67,9 +67,14 @@ private:
     void add_lobes(const RayBatch& rays, const HitBatch& hits, const MetRays& met, VertexBatch& vertices) const;
     void next_event(const VertexBatch& vertices, int vertex, Start start, PathWorkspace& workspace, VectorLanes& sum,
                     int& rays) const;
-    void connect(const VertexBatch& vertices, int vertex, Start start, const LightLanes& lights, ShadowRays& shadow,
-                 VectorLanes& sum, int& rays) const;
-    void scatter(const VertexBatch& vertices, int vertex, Start start, ScatteredRays& scattered) const;
+    void connect(const VertexBatch& vertices, int vertex, Start start, PathWorkspace& workspace, VectorLanes& sum,
+                 int& rays) const;
+    void scatter(const VertexBatch& vertices, int vertex, Start start, PathWorkspace& workspace, int& rays) const;
+    void draw_directions(const VertexBatch& vertices, int vertex, Start start, ScatteredRays& scattered,
+                         Lanes<std::uint8_t>& passes) const;
+    // Sets `open` to 0 where a way above the vertex (`rise` > 0) is wanted that something is in.
+    void close_hidden_bulges(const VertexBatch& vertices, const Lanes<float>& rise, ShadowRays& to_bulges,
+                             Lanes<float>& open, int& rays) const;
     void pass_panes(const VertexBatch& vertices, int vertex, Start start, ScatteredRays& scattered, HitBatch& hits,
                     int& rays) const;
     // How much what arrives at the first vertex from that far counts; infinity: from the background.

@@ -43,9 +43,15 @@ struct HitBatch {
     }
 };
 
-// The geometry of points that rays met, and their diffuse and emitted light.
+// The geometry of points that rays met, and their diffuse and emitted light; as SurfacePoint says.
 struct SurfaceLanes {
     VectorLanes ray_origin, geometric_normal, shading_normal, albedo, emission;
+    Lanes<float> bulge;
+
+    // Of a ray that starts that far above the surface.
+    PLUMBLINE_INLINE glm::vec3 origin(int lane, float rise) const {
+        return ray_origin.get(lane) + rise * shading_normal.get(lane);
+    }
 };
 
 // The rays of a batch that met something, in their order.

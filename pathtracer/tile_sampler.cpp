@@ -21,6 +21,7 @@ SurfacePoint plain_point(const SurfaceLanes& surfaces, int lane) {
     point.ray_origin = surfaces.ray_origin.get(lane);
     point.geometric_normal = surfaces.geometric_normal.get(lane);
     point.shading_normal = surfaces.shading_normal.get(lane);
+    point.bulge = surfaces.bulge[lane];
     point.albedo = surfaces.albedo.get(lane);
     return point;
 }

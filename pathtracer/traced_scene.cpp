@@ -28,13 +28,35 @@ struct MotionStep {
 
 struct PointGeometry {
     glm::vec3 position, ray_origin, geometric_normal, shading_normal;
+    float bulge;
     float side;  // 1: seen from the front, -1: from the back
 };
+
+// Weighted by the corners' weights, how far a point of the triangle lies under the planes through the corners that the
+// normals there define, and above them: by how much the surface that the normals tell of bulges to the front and to the
+// back.
+//   Source: Hanika 2021, "Hacking the Shadow Terminator" (Ray Tracing Gems II, chapter 4), of which this is the length.
+struct Bulge {
+    float front, back;
+};
+PLUMBLINE_INLINE Bulge bulge_of(const TracedTriangle& triangle, const std::array<glm::vec3, 3>& normals, float u,
+                                float v) {
+    const glm::vec3 point = triangle.point(u, v);
+    const float a = (1.0f - u - v) * glm::dot(triangle.a - point, normals[0]);
+    const float b = u * glm::dot(triangle.b - point, normals[1]), c = v * glm::dot(triangle.c - point, normals[2]);
+    const float front = std::max(0.0f, a) + std::max(0.0f, b) + std::max(0.0f, c);
+    return {front, front - (a + b + c)};
+}
+
+PLUMBLINE_INLINE glm::vec3 interpolate(const std::array<glm::vec3, 3>& corners, float u, float v) {
+    return (1.0f - u - v) * corners[0] + u * corners[1] + v * corners[2];
+}
 
 // Without branches, for loops over lanes. A zero `normal_sum` (none, or opposite normals that cancel) leaves the
 // face's.
 PLUMBLINE_INLINE PointGeometry point_geometry(const TracedTriangle& triangle, float u, float v,
-                                              const glm::vec3& normal_sum, const glm::vec3& ray_direction) {
+                                              const glm::vec3& normal_sum, const Bulge& bulge,
+                                              const glm::vec3& ray_direction) {
     PointGeometry point;
     point.position = triangle.point(u, v);
     const glm::vec3 scaled_normal = triangle.scaled_normal();
@@ -48,6 +70,9 @@ PLUMBLINE_INLINE PointGeometry point_geometry(const TracedTriangle& triangle, fl
     point.shading_normal = side * smooth;
     const float step = glm::dot(glm::abs(normal), triangle.error());
     point.ray_origin = point.position + step * point.geometric_normal;
+    // Normals that contradict the face tell of no surface. Less than the rounding error is nothing.
+    const float height = side > 0.0f ? bulge.front : bulge.back;
+    point.bulge = height * glm::dot(smooth, normal) > step ? height : 0.0f;
     return point;
 }
 
@@ -99,15 +124,13 @@ PLUMBLINE_INLINE void TracedScene::Part::corners(std::uint32_t triangle, float t
     corners.a = moved(indices[0]), corners.b = moved(indices[1]), corners.c = moved(indices[2]);
 }
 
-glm::vec3 TracedScene::Part::normal_sum(std::uint32_t triangle, float u, float v, float time) const {
+std::array<glm::vec3, 3> TracedScene::Part::corner_normals(std::uint32_t triangle, float time) const {
     const std::uint32_t* indices = triangles + 3 * static_cast<std::size_t>(triangle);
-    const auto interpolated = [&](const glm::vec3* from) {
-        return (1.0f - u - v) * from[indices[0]] + u * from[indices[1]] + v * from[indices[2]];
-    };
-    if (steps == 1) return interpolated(normals);
+    if (steps == 1) return {normals[indices[0]], normals[indices[1]], normals[indices[2]]};
     const MotionStep at(time, steps);
     const glm::vec3* first = normals + static_cast<std::size_t>(at.first) * vertex_count;
-    return at.mix(interpolated(first), interpolated(first + vertex_count));
+    const auto moved = [&](std::uint32_t vertex) { return at.mix(first[vertex], first[vertex_count + vertex]); };
+    return {moved(indices[0]), moved(indices[1]), moved(indices[2])};
 }
 
 glm::vec2 TracedScene::Part::uv(std::uint32_t triangle, float u, float v) const {
@@ -243,13 +266,15 @@ SurfacePoint TracedScene::surface_point(const SurfaceHit& hit, const glm::vec3& 
     const Part& part = parts_[hit.instance];
     TracedTriangle corners;
     part.corners(hit.triangle, time, corners);
-    const PointGeometry geometry =
-        point_geometry(corners, hit.u, hit.v, part.normal_sum(hit.triangle, hit.u, hit.v, time), ray_direction);
+    const std::array<glm::vec3, 3> normals = part.corner_normals(hit.triangle, time);
+    const PointGeometry geometry = point_geometry(corners, hit.u, hit.v, interpolate(normals, hit.u, hit.v),
+                                                  bulge_of(corners, normals, hit.u, hit.v), ray_direction);
     SurfacePoint point;
     point.position = geometry.position;
     point.ray_origin = geometry.ray_origin;
     point.geometric_normal = geometry.geometric_normal;
     point.shading_normal = geometry.shading_normal;
+    point.bulge = geometry.bulge;
     if (geometry.side > 0.0f || part.material->two_sided) {
         const SurfaceSample sample = part.sample(hit);
         point.albedo = sample.albedo, point.emission = sample.emission;
@@ -261,6 +286,7 @@ SurfacePoint TracedScene::surface_point(const SurfaceHit& hit, const glm::vec3& 
 // The corners of triangles that were hit, and what is interpolated between them.
 struct CornerLanes {
     VectorLanes a, b, c, normal_sum;
+    Lanes<float> bulge_front, bulge_back;
     Lanes<float> texture_u, texture_v;  // where the scene has textures
 };
 
@@ -282,8 +308,12 @@ void TracedScene::gather_corners(const HitBatch& hits, const MetRays& met, Corne
         const float u = hits.u[ray], v = hits.v[ray], w = 1.0f - u - v;
         const float* from = records + record[i];
         const auto at = [from](int first) { return glm::vec3(from[first], from[first + 1], from[first + 2]); };
-        corners.a.set(i, at(0)), corners.b.set(i, at(3)), corners.c.set(i, at(6));
-        corners.normal_sum.set(i, w * at(9) + u * at(12) + v * at(15));
+        const TracedTriangle triangle{at(0), at(3), at(6), {}, {}, {}};
+        corners.a.set(i, triangle.a), corners.b.set(i, triangle.b), corners.c.set(i, triangle.c);
+        const std::array<glm::vec3, 3> normals = {at(9), at(12), at(15)};
+        corners.normal_sum.set(i, interpolate(normals, u, v));
+        const Bulge bulge = bulge_of(triangle, normals, u, v);
+        corners.bulge_front[i] = bulge.front, corners.bulge_back[i] = bulge.back;
         corners.texture_u[i] = w * from[18] + u * from[20] + v * from[22];
         corners.texture_v[i] = w * from[19] + u * from[21] + v * from[23];
     }
@@ -298,7 +328,10 @@ void TracedScene::gather_moving_corners(const RayBatch& rays, const HitBatch& hi
         TracedTriangle triangle;
         part.corners(hit.triangle, rays.time[ray], triangle);
         corners.a.set(i, triangle.a), corners.b.set(i, triangle.b), corners.c.set(i, triangle.c);
-        corners.normal_sum.set(i, part.normal_sum(hit.triangle, hit.u, hit.v, rays.time[ray]));
+        const std::array<glm::vec3, 3> normals = part.corner_normals(hit.triangle, rays.time[ray]);
+        corners.normal_sum.set(i, interpolate(normals, hit.u, hit.v));
+        const Bulge bulge = bulge_of(triangle, normals, hit.u, hit.v);
+        corners.bulge_front[i] = bulge.front, corners.bulge_back[i] = bulge.back;
         const glm::vec2 uv = part.uv(hit.triangle, hit.u, hit.v);
         corners.texture_u[i] = uv.x, corners.texture_v[i] = uv.y;
     }
@@ -341,10 +374,12 @@ void TracedScene::surface_points(const RayBatch& rays, const HitBatch& hits, con
         const int ray = met.ray[i];
         const PointGeometry point =
             point_geometry({corners.a.get(i), corners.b.get(i), corners.c.get(i), {}, {}, {}}, hits.u[ray], hits.v[ray],
-                           corners.normal_sum.get(i), rays.direction.get(ray));
+                           corners.normal_sum.get(i), {corners.bulge_front[i], corners.bulge_back[i]},
+                           rays.direction.get(ray));
         points.ray_origin.set(i, point.ray_origin);
         points.geometric_normal.set(i, point.geometric_normal);
         points.shading_normal.set(i, point.shading_normal);
+        points.bulge[i] = point.bulge;
         const auto instance = static_cast<int>(hits.instance[ray]);
         const float lit_from_behind = back_is_lit[instance];
         lit[i] = point.side > 0.0f ? 1.0f : lit_from_behind;

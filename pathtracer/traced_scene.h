@@ -90,7 +90,7 @@ private:
         SurfaceSample constant;
 
         void corners(std::uint32_t triangle, float time, TracedTriangle& corners) const;
-        glm::vec3 normal_sum(std::uint32_t triangle, float u, float v, float time) const;  // 0 where there are none
+        std::array<glm::vec3, 3> corner_normals(std::uint32_t triangle, float time) const;  // 0 where there are none
         glm::vec2 uv(std::uint32_t triangle, float u, float v) const;
         SurfaceSample sample(const SurfaceHit& hit) const;
     };

@@ -87,6 +87,19 @@ inline Setting room_with_a_pane() {
     return setting;
 }
 
+// A coarse ball with the normals of a sphere, at its terminator under a near lamp: half of the light comes to the bulges
+// of faces that do not see it. `with_gloss`: also by its specular lobe.
+inline Setting faceted_ball(bool with_gloss = false) {
+    Scene scene;
+    add_smooth_ball(scene, add_material(scene, glm::vec3(0.6f)), 1);
+    if (with_gloss) scene.materials[0].dielectric_reflectance = 0.04f, scene.materials[0].roughness = 0.4f;
+    add_quads(scene, add_material(scene, glm::vec3(0.0f), glm::vec3(8.0f)),
+              {{{2.0f, -0.5f, -0.5f}, {2.0f, -0.5f, 0.5f}, {2.0f, 0.5f, 0.5f}, {2.0f, 0.5f, -0.5f}}});
+    add_quads(scene, add_material(scene, glm::vec3(0.5f)), {floor_quad(5.0f, -1.0f)});
+    return {with_gloss ? "GlossyFacetedBall" : "FacetedBall", std::move(scene),
+            small_view({1.2f, 0.6f, 3.0f}, {0.66f, 0.1f, 0.74f}, 0.12f)};
+}
+
 // How to render; by default `settings` as they are changed here. Adding one is one line.
 struct Way {
     std::string name;

@@ -23,6 +23,10 @@ std::vector<Comparison> comparisons() {
         {glossy_room(), directions, both, {"direct", "reflection"}, 0, 8192},
         {room_with_a_pane(), lights, both, direct, 0},
         {room_with_a_pane(), directions, both, direct, 0, 12288},
+        {faceted_ball(), lights, both, direct},
+        {faceted_ball(), directions, both, direct, 0, 8192},
+        {faceted_ball(true), lights, both, {"direct", "reflection"}, 0},
+        {faceted_ball(true), directions, both, {"direct", "reflection"}, 0, 8192},
         {room(), half_a, half_b, first_bounce, 1, 12288},
         {room(), as_it_is, random_points, first_bounce, 1, 12288},
         {room(), as_it_is, shards, first_bounce, 1, 8192},  // of other seeds

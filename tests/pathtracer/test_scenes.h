@@ -1,12 +1,14 @@
 // Small scenes with known answers, and statistical comparison with them.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <functional>
 #include <string>
 #include <vector>
 
 #include <glm/glm.hpp>
+#include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
 #include "pathtracer/reference.h"
@@ -100,6 +102,34 @@ inline std::vector<std::vector<glm::vec3>> room_quads() {
         }
     }
     return quads;
+}
+
+// A unit ball of 8 * 4^subdivisions triangles, with the normals of a sphere.
+inline void add_smooth_ball(Scene& scene, int material, int subdivisions, const glm::vec3& centre = glm::vec3(0.0f)) {
+    using Triangle = std::array<glm::vec3, 3>;
+    std::vector<Triangle> triangles;
+    for (int octant = 0; octant < 8; ++octant) {
+        const glm::vec3 x((octant & 1) != 0 ? 1 : -1, 0, 0), y(0, (octant & 2) != 0 ? 1 : -1, 0),
+            z(0, 0, (octant & 4) != 0 ? 1 : -1);
+        triangles.push_back(x.x * y.y * z.z > 0.0f ? Triangle{x, y, z} : Triangle{x, z, y});
+    }
+    for (int i = 0; i < subdivisions; ++i) {
+        std::vector<Triangle> finer;
+        for (const auto& [a, b, c] : triangles) {
+            const glm::vec3 ab = glm::normalize(a + b), bc = glm::normalize(b + c), ca = glm::normalize(c + a);
+            finer.insert(finer.end(), {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}});
+        }
+        triangles = finer;
+    }
+    Mesh mesh;
+    mesh.material = material;
+    for (const Triangle& triangle : triangles) {
+        const auto first = static_cast<unsigned>(mesh.positions.size());
+        for (const glm::vec3& corner : triangle) mesh.positions.push_back(corner), mesh.normals.push_back(corner);
+        mesh.triangles.push_back({first, first + 1, first + 2});
+    }
+    scene.instances.push_back({"ball", static_cast<int>(scene.meshes.size()), glm::translate(glm::mat4(1.0f), centre)});
+    scene.meshes.push_back(mesh);
 }
 
 // A view of `size` x `size` pixels.
