@@ -65,7 +65,7 @@ struct SurfacePoint {
     // How far above the face, along the shading normal, the surface lies for which the face stands; 0 where it does not
     // bulge. A ray into the half space of the shading normal but not of the geometric one starts there.
     float bulge = 0.0f;
-    glm::vec3 albedo{0.0f};            // 0 on the back of a one-sided surface, as is the emission
+    glm::vec3 albedo{0.0f};  // 0 on the back of a one-sided surface, as is the emission
     glm::vec3 emission{0.0f};
     SpecularSurface specular;
 };

@@ -372,10 +372,9 @@ void TracedScene::surface_points(const RayBatch& rays, const HitBatch& hits, con
     PLUMBLINE_INDEPENDENT_LANES
     for (int i = 0; i < whole_groups(met.count); ++i) {
         const int ray = met.ray[i];
-        const PointGeometry point =
-            point_geometry({corners.a.get(i), corners.b.get(i), corners.c.get(i), {}, {}, {}}, hits.u[ray], hits.v[ray],
-                           corners.normal_sum.get(i), {corners.bulge_front[i], corners.bulge_back[i]},
-                           rays.direction.get(ray));
+        const PointGeometry point = point_geometry(
+            {corners.a.get(i), corners.b.get(i), corners.c.get(i), {}, {}, {}}, hits.u[ray], hits.v[ray],
+            corners.normal_sum.get(i), {corners.bulge_front[i], corners.bulge_back[i]}, rays.direction.get(ray));
         points.ray_origin.set(i, point.ray_origin);
         points.geometric_normal.set(i, point.geometric_normal);
         points.shading_normal.set(i, point.shading_normal);

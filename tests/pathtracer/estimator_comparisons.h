@@ -87,7 +87,7 @@ inline Setting room_with_a_pane() {
     return setting;
 }
 
-// A coarse ball with the normals of a sphere, at its terminator under a near lamp: half of the light comes to the bulges
+// A coarse ball with the normals of a sphere, at its terminator under a near lamp, where light comes to the bulges
 // of faces that do not see it. `with_gloss`: also by its specular lobe.
 inline Setting faceted_ball(bool with_gloss = false) {
     Scene scene;

@@ -35,8 +35,8 @@ double share_that_differs(const Scene& scene, const View& view, const glm::vec3&
 }
 
 // Seen from the side, so that the ball's terminator runs through the picture. Were light kept away by the faces that it
-// comes from behind, 13 %, 3 % and 2 % of the pixels of 32, 128 and 512 faces would be black where the ball is lit. What
-// is left is at the very corners of faces, where there is next to no bulge; no pixel's centre need lie there.
+// comes from behind, 13 %, 3 % and 2 % of the pixels of 32, 128 and 512 faces would be black where the ball is lit.
+// What is left is at the very corners of faces, where there is next to no bulge; no pixel's centre need lie there.
 TEST(SmoothSurface, HasNoBlackFacesAtItsTerminator) {
     const glm::vec3 towards = glm::normalize(glm::vec3(1.0f, 0.3f, 0.2f));
     for (const int subdivisions : {1, 2, 3}) {

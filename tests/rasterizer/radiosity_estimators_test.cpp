@@ -115,20 +115,28 @@ TEST_P(RadiosityEstimatorsTest, ConvergeToTheirIntegralOverTheDisc) {
         // Divided by the hits it would be a quotient of two such integrals, which says nothing where hardly a tap hits.
         RadiositySettings settings{
             .estimator = estimator, .normalisation = RadiosityNormalisation::samples, .use_mip_chain = false};
+        const auto pixels = [&](const auto& look_at) {
+            for (int y = 5; y < 90; y += 20) {
+                for (int x = 5; x < 120; x += 15) {
+                    const counterpart::Pixel pixel{x, y};
+                    if (counterpart::depth_at(layers, 0, pixel) != 0.0) look_at(pixel);
+                }
+            }
+        };
+        std::vector<glm::dvec4> limits;
+        pixels([&](counterpart::Pixel pixel) { limits.push_back(limit_of(layers, settings, pixel)); });
         const auto mean_error = [&](int samples, int seeds = 1) {
             settings.samples = samples;
             ScreenSpaceRun run(context(), layers, unblurred(settings), gathered);
             const Image image = mean_over_seeds(run, "radiosity", 4, seeds);
             glm::dvec2 error{0.0}, reference{0.0};
-            for (int y = 5; y < 90; y += 20) {
-                for (int x = 5; x < 120; x += 15) {
-                    if (counterpart::depth_at(run.layers(), 0, {x, y}) == 0.0) continue;
-                    const glm::dvec4 expected = limit_of(run.layers(), settings, {x, y});
-                    error +=
-                        glm::abs(glm::dvec2(image.at(x, 89 - y, 0) - expected.x, image.at(x, 89 - y, 3) - expected.w));
-                    reference += glm::dvec2(expected.x, expected.w);
-                }
-            }
+            auto expected = limits.begin();
+            pixels([&](counterpart::Pixel pixel) {
+                const glm::dvec2 is(image.at(pixel.x, 89 - pixel.y, 0), image.at(pixel.x, 89 - pixel.y, 3));
+                error += glm::abs(is - glm::dvec2(expected->x, expected->w));
+                reference += glm::dvec2(expected->x, expected->w);
+                ++expected;
+            });
             EXPECT_GT(reference.x, 0.5) << "of 40 pixels: wall, floor and board light each other";
             return error / reference;
         };
