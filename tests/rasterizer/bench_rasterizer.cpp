@@ -1,9 +1,11 @@
 // Milliseconds of each pass at three sizes, on the colonnade: `bench_rasterizer --benchmark_filter=direct`.
+// Light volumes, shadow maps by kind and further bounces have benchmarks of their own (bench_lights, bench_radiosity).
 //
 // Only the passes that the measured one needs run with it. Times are the pipeline's own (GPU timer queries, or glFinish
 // and the steady clock on a software rasteriser), without read-back.
 #include <algorithm>
 #include <cstdio>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -20,40 +22,91 @@ namespace {
 struct PassCase {
     const char* pass;
     std::vector<std::string> planes;  // what to ask for, so that the pass runs
+    std::function<void(Method&)> change = [](Method&) {};
 };
 
-const std::vector<PassCase> pass_cases{{"gbuffer", {"depth", "normal", "albedo"}},
-                                       {"gbuffer.layer2", {"layer2.depth", "layer2.normal", "layer2.albedo"}},
-                                       {"motion", {"motion"}},
-                                       {"depth MIP chain", {"ao"}},
-                                       {"ambient obscurance", {"ao"}},
-                                       {"ambient obscurance blur", {"ao"}},
-                                       {"shadows", {"direct"}},
-                                       {"direct", {"direct"}},
-                                       {"direct.layer2", {"layer2.direct"}},
-                                       {"radiosity", {"indirect"}},
-                                       {"radiosity blur", {"indirect"}},
-                                       {"radiosity reflection", {"indirect"}},
-                                       {"composite", {"total"}}};
+// Rays that end at once, where the time of a pass beside them is asked for.
+void reflect_shortly(Method& method) { method.reflections.enabled = true, method.reflections.max_steps = 8; }
+
+void reflect_probe(Method& method) {
+    reflect_shortly(method);
+    method.reflections.fallback = ReflectionFallback::probe;
+    method.probe.y = 2.0f, method.probe.every_frame = true;
+}
+
+const std::vector<PassCase> pass_cases{
+    {"gbuffer", {"depth", "normal", "albedo"}},
+    {"gbuffer.layer2", {"layer2.depth", "layer2.normal", "layer2.albedo"}},
+    {"motion", {"motion"}},
+    {"depth MIP chain", {"ao"}},
+    {"ambient obscurance", {"ao"}},
+    {"ambient obscurance blur", {"ao"}},
+    {"shadows", {"direct"}},
+    {"direct", {"direct"}},
+    {"direct.layer2", {"layer2.direct"}},
+    {"radiosity", {"indirect"}},
+    {"radiosity blur", {"indirect"}},
+    {"radiosity reflection", {"indirect"}},
+    {"radiosity carried on", {"indirect"}, [](Method& method) { method.radiosity.carry = true; }},
+    {"lamp highlights", {"reflection"}, reflect_shortly},
+    {"radiance MIP chain", {"reflection"}, reflect_shortly},
+    {"reflections", {"reflection"}, [](Method& method) { method.reflections.enabled = true; }},
+    {"probe", {"reflection"}, reflect_probe},
+    {"composite", {"total"}},
+    {"temporal antialias", {"total"}, [](Method& method) { method.antialias.temporal = true; }},
+};
+
+// Every surface slightly glossy, so that reflections have something to do.
+Scene colonnade() {
+    Scene scene = make_builtin_scene("colonnade");
+    for (Material& material : scene.materials) material.dielectric_reflectance = 0.04f, material.roughness = 0.3f;
+    return scene;
+}
+
+// What `pass` takes of the next frame, in seconds; negative and an error where it does not run.
+double seconds_of(const char* pass, Pipeline& pipeline, const View& view, benchmark::State& state) {
+    const std::vector<PassTiming> timings = pipeline.time_passes(view);
+    const auto timing = std::ranges::find(timings, pass, &PassTiming::pass);
+    if (timing != timings.end()) return 1e-3 * timing->milliseconds;
+    state.SkipWithError("the pass did not run");
+    return -1.0;
+}
 
 void measure(benchmark::State& state, GlContext& context, const Scene& scene, const PassCase& pass_case) {
     const int height = static_cast<int>(state.range(0)), width = height * 16 / 9;
     Quantities quantities;
     quantities.planes = pass_case.planes;
-    Pipeline pipeline(context, scene, Method(), quantities, width, height);
+    Method method;
+    pass_case.change(method);
+    Pipeline pipeline(context, scene, method, quantities, width, height);
     const View view(scene.camera("court"), width, height);
     pipeline.time_passes(view);  // the first frame compiles what drivers compile late
     for (auto _ : state) {
-        const std::vector<PassTiming> timings = pipeline.time_passes(view);
-        const auto timing = std::ranges::find(timings, pass_case.pass, &PassTiming::pass);
-        if (timing == timings.end()) {
-            state.SkipWithError("the pass did not run");
-            return;
-        }
-        state.SetIterationTime(1e-3 * timing->milliseconds);
+        const double seconds = seconds_of(pass_case.pass, pipeline, view, state);
+        if (seconds < 0.0) return;
+        state.SetIterationTime(seconds);
     }
     state.counters["pixels"] = static_cast<double>(width) * height;
     state.counters["GL_MiB"] = static_cast<double>(context.allocated_bytes()) / (1024.0 * 1024.0);
+}
+
+// The environment's maps are made in a pipeline's first frame and kept, whatever the image's size.
+void measure_environment_maps(benchmark::State& state, GlContext& context, const Scene& scene) {
+    Method method;
+    method.environment.size = static_cast<int>(state.range(0));
+    method.reflections.enabled = true, method.reflections.fallback = ReflectionFallback::environment;
+    Quantities quantities;
+    quantities.planes = {"reflection"};
+    const View view(scene.camera("court"), 32, 18);
+    for (auto _ : state) {
+        Pipeline pipeline(context, scene, method, quantities, view.width(), view.height());
+        const double seconds = seconds_of("environment maps", pipeline, view, state);
+        if (seconds < 0.0) return;
+        state.SetIterationTime(seconds);
+    }
+    const double texels = 6.0 * static_cast<double>(state.range(0) * state.range(0));
+    state.counters["texels"] = texels;
+    state.counters["taps"] = texels * method.environment.samples;
 }
 
 }  // namespace
@@ -63,7 +116,7 @@ int main(int argument_count, char** arguments) {
     benchmark::Initialize(&argument_count, arguments);
     if (benchmark::ReportUnrecognizedArguments(argument_count, arguments)) return 2;
     const std::unique_ptr<plumb::GlContext> context = plumb::GlContext::create();
-    const plumb::Scene scene = plumb::make_builtin_scene("colonnade");
+    const plumb::Scene scene = plumb::colonnade();
     std::printf("%s, %s\n", context->info().renderer.c_str(), context->info().platform.c_str());
     for (const plumb::PassCase& pass_case : plumb::pass_cases) {
         benchmark::RegisterBenchmark(
@@ -76,6 +129,15 @@ int main(int argument_count, char** arguments) {
             ->Iterations(10)  // each is a frame; a time limit on a cheap pass would wait for its costly neighbours
             ->Unit(benchmark::kMillisecond);
     }
+    benchmark::RegisterBenchmark(
+        "environment maps", [&](benchmark::State& state) { plumb::measure_environment_maps(state, *context, scene); })
+        ->Arg(64)
+        ->Arg(128)
+        ->Arg(256)
+        ->ArgName("size")
+        ->UseManualTime()
+        ->Iterations(3)
+        ->Unit(benchmark::kMillisecond);
     benchmark::RunSpecifiedBenchmarks();
     return 0;
 }
