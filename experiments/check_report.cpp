@@ -19,7 +19,7 @@ using Align = TerminalTable::Align;
 
 Json number(const std::optional<double>& value) { return value ? number_json(*value) : Json(nullptr); }
 
-std::string short_number(const std::optional<double>& value) { return value ? fmt::format("{:.4g}", *value) : "-"; }
+std::string four_digits(const std::optional<double>& value) { return value ? fmt::format("{:.4g}", *value) : "-"; }
 
 std::string percent(double share) {
     if (std::isnan(share)) return "-";
@@ -32,14 +32,14 @@ std::optional<double> calibrated_mean(const Threshold& threshold) {
 }
 
 std::string limit_text(const Threshold& threshold) {
-    return fmt::format("{} {}", threshold.fails_above ? "<=" : ">=", short_number(threshold.limit));
+    return fmt::format("{} {}", threshold.fails_above ? "<=" : ">=", four_digits(threshold.limit));
 }
 
 // What a reader of a failure needs, one fact a line.
 std::string facts_of(const Verdict& verdict) {
     const Threshold& threshold = verdict.threshold;
     std::string text = verdict.message;
-    text.append(fmt::format("\nvalue {}, limit {}, margin {}", short_number(verdict.value.value), limit_text(threshold),
+    text.append(fmt::format("\nvalue {}, limit {}, margin {}", four_digits(verdict.value.value), limit_text(threshold),
                             percent(verdict.margin())));
     if (threshold.calibrated) {
         text.append(fmt::format("\nat calibration {:.6g} (spread {:.2g} over {} runs), change {}",
@@ -112,9 +112,9 @@ std::string print_check_table(const CheckResults& results) {
     for (const Verdict& verdict : results.verdicts) {
         std::string status(to_string(verdict.status));
         if (verdict.moved() && verdict.status == VerdictStatus::kept) status.append(", moved");
-        table.add_row({verdict.threshold.name, verdict.value.place, short_number(verdict.value.value),
+        table.add_row({verdict.threshold.name, verdict.value.place, four_digits(verdict.value.value),
                        limit_text(verdict.threshold), percent(verdict.margin()),
-                       short_number(calibrated_mean(verdict.threshold)), percent(verdict.change()), std::move(status)});
+                       four_digits(calibrated_mean(verdict.threshold)), percent(verdict.change()), std::move(status)});
     }
     std::string text = table.print();
     if (const std::string moved = describe_movement(results.verdicts); !moved.empty()) text.append("\n" + moved + "\n");
@@ -145,7 +145,7 @@ std::string print_calibration_table(const ThresholdSet& before, const ThresholdS
         const CalibratedValue& value = threshold.calibrated.value();
         table.add_row({threshold.name, fmt::format("{}", value.runs), fmt::format("{:.6g}", value.mean),
                        fmt::format("{:.2f} %", 100.0 * value.spread / std::abs(value.mean)),
-                       old == before.thresholds.end() ? "-" : short_number(old->limit), limit_text(threshold)});
+                       old == before.thresholds.end() ? "-" : four_digits(old->limit), limit_text(threshold)});
     }
     return table.print();
 }

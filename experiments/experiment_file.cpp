@@ -217,6 +217,8 @@ Experiment parse_experiment(const ConfigValue& table, const std::filesystem::pat
     for (const char* key : {"figures", "originals", "claims", "ladders"}) {
         if (const ConfigValue* tables = reader.value(key)) presentation.push_back({key, *tables});
     }
+    // What `plumbline check` holds the results against; a run only measures them.
+    for (const char* key : {"thresholds", "calibration", "must_fail"}) reader.value(key);
     experiment.baseline = reader.text("baseline", experiment.methods.front().name);
     if (!find_method(experiment.methods, experiment.baseline)) {
         std::vector<std::string> methods;

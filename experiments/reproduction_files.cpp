@@ -7,6 +7,7 @@
 #include "experiments/figures.h"
 #include "experiments/reproduction.h"
 #include "experiments/svg_raster.h"
+#include "experiments/svg_table.h"
 #include "frames/atomic_file.h"
 
 namespace plumb {
@@ -54,6 +55,9 @@ private:
         add_heading(title, source);
         readme_ += table.print_markdown();
         presented_.text += fmt::format("\n{}\n{}", title, table.print_text());
+        const std::string svg = print_svg_table(table, title);
+        write(name + ".svg", svg);
+        write(name + ".png", rasterise_svg(svg));
         write(name + ".csv", table.print_csv());
     }
 

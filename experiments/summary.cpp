@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "experiments/result_table.h"
 #include "experiments/statistics.h"
 #include "experiments/terminal_table.h"
 
@@ -35,10 +36,6 @@ std::string truth_kind(const std::string& truth) {
 }
 
 // Three digits that count, without an exponent where the number is large.
-std::string short_number(double value) {
-    return std::abs(value) >= 1000.0 ? fmt::format("{:.0f}", value) : fmt::format("{:.3g}", value);
-}
-
 std::string with_interval(double value, double low, double high) {
     if (!std::isfinite(low) || !std::isfinite(high)) return short_number(value);
     return fmt::format("{} [{}, {}]", short_number(value), short_number(low), short_number(high));

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "experiments/page.h"
+#include "experiments/svg_parts.h"
 
 namespace plumb {
 namespace {
@@ -16,9 +16,9 @@ namespace {
 constexpr double panel_width = 330.0, panel_height = 270.0;
 constexpr double left = 64.0, right = 14.0, top = 30.0, bottom = 46.0;
 constexpr double head = 40.0, foot = 28.0;
-constexpr double legend_line = 15.0, letter_width = 6.3, title_letter_width = 10.0;
+constexpr double legend_line = 15.0, letter_width = 6.3;
 constexpr double slant_height = 46.0;  // more for names of categories that stand aslant
-constexpr const char *ink = "#222222", *faint = "#dddddd";
+constexpr const char* faint = "#dddddd";
 
 struct Axis {
     bool logarithmic = true;
@@ -50,18 +50,6 @@ struct Axis {
         return logarithmic ? logarithmic_ticks(least, greatest) : linear_ticks(least, greatest);
     }
 };
-
-std::string text(double x, double y, const std::string& anchor, const std::string& content,
-                 const std::string& attributes = "") {
-    return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\"{}>{}</text>\n", x, y, anchor,
-                       attributes.empty() ? "" : " " + attributes, escape_html(content));
-}
-
-std::string line(double x1, double y1, double x2, double y2, const std::string& colour,
-                 const std::string& attributes = "") {
-    return fmt::format("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"{}\"{}/>\n", x1, y1, x2,
-                       y2, colour, attributes.empty() ? "" : " " + attributes);
-}
 
 std::string rectangle(double x, double y, double width, double height, const std::string& fill) {
     return fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"{}\"/>\n", x, y,
@@ -144,24 +132,24 @@ private:
         std::string svg;
         if (chart_.categories.empty()) {
             for (const double tick : x_.ticks()) {
-                svg += line(x_.place(tick), y_.from, x_.place(tick), y_.to, faint);
-                svg += text(x_.place(tick), y_.from + 14.0, "middle", fmt::format("{:g}", tick));
+                svg += svg_line(x_.place(tick), y_.from, x_.place(tick), y_.to, faint);
+                svg += svg_text(x_.place(tick), y_.from + 14.0, "middle", fmt::format("{:g}", tick));
             }
         } else {
             svg += draw_categories();
         }
         for (const double tick : y_.ticks()) {
-            svg += line(x_.from, y_.place(tick), x_.to, y_.place(tick), faint);
-            svg += text(x_.from - 5.0, y_.place(tick) + 4.0, "end", fmt::format("{:g}", tick));
+            svg += svg_line(x_.from, y_.place(tick), x_.to, y_.place(tick), faint);
+            svg += svg_text(x_.from - 5.0, y_.place(tick) + 4.0, "end", fmt::format("{:g}", tick));
         }
         svg += fmt::format(
             "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"none\" stroke=\"{}\"/>\n",
-            x_.from, y_.to, x_.to - x_.from, y_.from - y_.to, ink);
+            x_.from, y_.to, x_.to - x_.from, y_.from - y_.to, svg_ink);
         const double middle_x = 0.5 * (x_.from + x_.to), middle_y = 0.5 * (y_.from + y_.to);
-        svg += text(middle_x, y_.to - 9.0, "middle", chart_.title, "font-weight=\"bold\"");
-        if (!chart_.x_label.empty()) svg += text(middle_x, y_.from + 32.0, "middle", chart_.x_label);
-        svg += text(x_.from - 51.0, middle_y, "middle", chart_.y_label,
-                    fmt::format("transform=\"rotate(-90 {:.1f} {:.1f})\"", x_.from - 51.0, middle_y));
+        svg += svg_text(middle_x, y_.to - 9.0, "middle", chart_.title, "font-weight=\"bold\"");
+        if (!chart_.x_label.empty()) svg += svg_text(middle_x, y_.from + 32.0, "middle", chart_.x_label);
+        svg += svg_text(x_.from - 51.0, middle_y, "middle", chart_.y_label,
+                        fmt::format("transform=\"rotate(-90 {:.1f} {:.1f})\"", x_.from - 51.0, middle_y));
         return svg;
     }
 
@@ -170,9 +158,9 @@ private:
         std::string svg;
         for (std::size_t i = 0; i < chart_.categories.size(); ++i) {
             const double x = x_.place(static_cast<double>(i)), y = y_.from + (aslant ? 11.0 : 14.0);
-            svg += aslant ? text(x + 4.0, y, "end", chart_.categories[i],
-                                 fmt::format("transform=\"rotate(-25 {:.1f} {:.1f})\"", x + 4.0, y))
-                          : text(x, y, "middle", chart_.categories[i]);
+            svg += aslant ? svg_text(x + 4.0, y, "end", chart_.categories[i],
+                                     fmt::format("transform=\"rotate(-25 {:.1f} {:.1f})\"", x + 4.0, y))
+                          : svg_text(x, y, "middle", chart_.categories[i]);
         }
         return svg;
     }
@@ -185,7 +173,7 @@ private:
             const double at_x = x_.place(point.x), at_y = y_.place(point.y);
             path += fmt::format("{}{:.1f} {:.1f} ", path.empty() ? "M" : "L", at_x, at_y);
             if (has_error_bar(point))
-                bars += line(at_x, y_.place(point.lower), at_x, y_.place(point.upper), series.colour);
+                bars += svg_line(at_x, y_.place(point.lower), at_x, y_.place(point.upper), series.colour);
             if (has_markers(series)) markers += marker(series.marker, at_x, at_y, series.colour);
             if (i < series.labels.size()) markers += draw_label(series.labels[i], at_x, at_y);
         }
@@ -200,7 +188,8 @@ private:
     // Towards the middle, so that it stays within the frame.
     std::string draw_label(const std::string& label, double x, double y) const {
         const bool to_the_left = x > 0.5 * (x_.from + x_.to);
-        return text(x + (to_the_left ? -6.0 : 6.0), y - 4.0, to_the_left ? "end" : "start", label, "font-size=\"9\"");
+        return svg_text(x + (to_the_left ? -6.0 : 6.0), y - 4.0, to_the_left ? "end" : "start", label,
+                        "font-size=\"9\"");
     }
 
     std::string draw_bars(const ChartSeries& series, int index, int count) const {
@@ -215,10 +204,11 @@ private:
             const double base = y_.can_show(point.base) ? y_.place(point.base) : y_.from, end = y_.place(point.y);
             svg += rectangle(middle - 0.46 * width, std::min(base, end), 0.92 * width, std::abs(base - end),
                              series.colour);
-            if (has_error_bar(point)) svg += line(middle, y_.place(point.lower), middle, y_.place(point.upper), ink);
+            if (has_error_bar(point))
+                svg += svg_line(middle, y_.place(point.lower), middle, y_.place(point.upper), svg_ink);
             // To the next bar, which begins where this one ends.
             if (chart_.is_waterfall && middle + room < x_.to)
-                svg += line(middle + 0.4 * room, end, middle + 0.6 * room, end, ink, "stroke-width=\"0.7\"");
+                svg += svg_line(middle + 0.4 * room, end, middle + 0.6 * room, end, svg_ink, "stroke-width=\"0.7\"");
         }
         return svg;
     }
@@ -262,10 +252,10 @@ private:
         for (const ChartSeries& series : chart_.series) {
             if (series.name.empty()) continue;
             if (has_line(series))
-                svg += line(edge + side * 26.0, y - 4.0, edge + side * 8.0, y - 4.0, series.colour, dashes(series));
+                svg += svg_line(edge + side * 26.0, y - 4.0, edge + side * 8.0, y - 4.0, series.colour, dashes(series));
             if (has_markers(series)) svg += marker(series.marker, edge + side * 17.0, y - 4.0, series.colour);
             if (is_bars(series)) svg += rectangle(edge + side * 17.0 - 5.0, y - 9.0, 10.0, 10.0, series.colour);
-            svg += text(edge + side * 31.0, y, corner.at_left ? "start" : "end", series.name);
+            svg += svg_text(edge + side * 31.0, y, corner.at_left ? "start" : "end", series.name);
             y += legend_line;
         }
         return svg;
@@ -315,20 +305,15 @@ std::string print_svg(const std::vector<Chart>& charts, int columns, const std::
     const int rows = (static_cast<int>(charts.size()) + columns - 1) / columns;
     const double row_height = panel_height + (std::ranges::any_of(charts, has_slanted_categories) ? slant_height : 0.0);
     const double panels_width = columns * panel_width;
-    const double width = std::max({panels_width, 20.0 + static_cast<double>(title.size()) * title_letter_width,
+    const double width = std::max({panels_width, 20.0 + static_cast<double>(title.size()) * svg_title_letter_width,
                                    20.0 + static_cast<double>(note.size()) * letter_width});
     const double height = head + rows * row_height + (note.empty() ? 8.0 : foot);
-    std::string svg = fmt::format(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" viewBox=\"0 0 {0:.0f} "
-        "{1:.0f}\" font-family=\"DejaVu Sans, Helvetica, sans-serif\" font-size=\"11\" fill=\"{2}\" role=\"img\">\n"
-        "<title>{3}</title>\n<rect width=\"{0:.0f}\" height=\"{1:.0f}\" fill=\"#ffffff\"/>\n",
-        width, height, ink, escape_html(title));
-    svg += text(0.5 * width, 25.0, "middle", title, "font-size=\"16\" font-weight=\"bold\"");
+    std::string svg = open_svg(width, height, title);
     for (std::size_t i = 0; i < charts.size(); ++i) {
         const int column = static_cast<int>(i) % columns, row = static_cast<int>(i) / columns;
         svg += Panel(charts[i], 0.5 * (width - panels_width) + column * panel_width, head + row * row_height).draw();
     }
-    if (!note.empty()) svg += text(0.5 * width, height - 10.0, "middle", note);
+    if (!note.empty()) svg += svg_text(0.5 * width, height - 10.0, "middle", note);
     return svg + "</svg>\n";
 }
 

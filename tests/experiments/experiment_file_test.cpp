@@ -42,6 +42,12 @@ TEST(ExperimentFile, TheShippedExperimentIsValid) {
     EXPECT_EQ(experiment.methods.size(), 2u);
 }
 
+TEST(ExperimentFile, AGateIsAnExperimentTooWhoseLimitsARunLeavesAlone) {
+    const Experiment gate = load_experiment(PLUMBLINE_SOURCE_DIR "/experiments/ci.toml");
+    EXPECT_FALSE(gate.methods.empty());
+    EXPECT_EQ(parse(valid + "[[thresholds]]\nname = \"ao\"\n").methods.size(), 2u);
+}
+
 TEST(ExperimentFile, MistakesAreReportedWithTheirLine) {
     EXPECT_THAT(parse_failure("plane = [\"ao\"]\n" + valid),
                 AllOf(HasSubstr("e.toml:1: plane"), HasSubstr("did you mean 'planes'?")));

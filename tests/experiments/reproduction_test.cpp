@@ -14,6 +14,7 @@
 #include "experiments/experiment_file.h"
 #include "experiments/figures.h"
 #include "experiments/svg_raster.h"
+#include "experiments/svg_table.h"
 #include "frames/atomic_file.h"
 #include "frames/image_error.h"
 #include "frames/picture.h"
@@ -207,6 +208,35 @@ TEST(Figures, OriginalsStandBesideOursAsRatios) {
     EXPECT_THAT(table.rows[0], testing::ElementsAre("few", "1", "1", "14.1", "1", "2"));
     EXPECT_THAT(table.rows[1], testing::ElementsAre("many", "3", "3", "28.3", "2 [2, 2]", "2"));
     EXPECT_THAT(table.rows[2], testing::ElementsAre("elsewhere", "4", "4", "not here", "-", "0"));
+}
+
+double attribute(const std::string& element, const std::string& name) {
+    return std::stod(element.substr(element.find(" " + name + "=\"") + name.size() + 3));
+}
+
+TEST(Figures, TablesAreDrawnRowByRowWithinTheirSheet) {
+    ResultTable table;
+    table.columns = {"method", "ms"}, table.rows = {{"one", "1.5"}, {"a < b", "20"}};
+    const std::string svg = print_svg_table(table, "Times & errors");
+    EXPECT_THAT(svg, AllOf(HasSubstr(">Times &amp; errors</text>"), HasSubstr(">a &lt; b</text>")));
+    EXPECT_THAT(png_of(svg), testing::StartsWith(png_signature));
+    const auto element = [&](const std::string& content) {
+        const std::size_t end = svg.find(">" + content + "</text>");
+        return end == std::string::npos ? "" : svg.substr(svg.rfind("<text", end), end - svg.rfind("<text", end));
+    };
+    const std::string sheet = svg.substr(0, svg.find('>'));
+    double last = 0.0;
+    for (const std::size_t row : {0u, 1u}) {
+        const std::string name = element(row == 0 ? "one" : "a &lt; b"), number = element(table.rows[row][1]);
+        EXPECT_EQ(attribute(name, "y"), attribute(number, "y"));
+        EXPECT_GT(attribute(name, "y"), last);
+        last = attribute(name, "y");
+        EXPECT_EQ(attribute(name, "x"), attribute(element("method"), "x")) << "names stand to the left";
+        EXPECT_EQ(attribute(number, "x"), attribute(element("ms"), "x"));
+        EXPECT_THAT(number, HasSubstr("text-anchor=\"end\"")) << "numbers to the right";
+        EXPECT_LT(attribute(number, "x"), attribute(sheet, "width"));
+    }
+    EXPECT_LT(last, attribute(sheet, "height"));
 }
 
 TEST(Figures, PictureSheetsHoldTheirPictures) {
