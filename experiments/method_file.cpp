@@ -15,7 +15,8 @@
 namespace plumb {
 namespace {
 
-constexpr std::array embedded_method_files = {"one_layer.toml", "two_layers.toml"};
+constexpr std::array embedded_method_files = {"one_layer.toml", "two_layers.toml", "nielsen2015.toml",
+                                              "mara2016_demo.toml"};
 
 // The members of a table with their dotted names; `name` and `base` are the method's own.
 void collect_leaves(const ConfigMembers& members, const std::string& prefix,

@@ -7,6 +7,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "rasterizer/pass_plan.h"
+#include "rasterizer/passes.h"
+#include "scenes/builtin.h"
 #include "tests/message_of.h"
 
 namespace plumb {
@@ -21,6 +24,24 @@ Method read_method(const std::string& text, const MethodList& known = builtin_me
 
 std::string method_failure(const std::string& text) {
     return message_of<ConfigError>([&] { read_method(text); });
+}
+
+// Those that stand for a publication: every parameter that they set has an effect in every scene, or they are refused.
+TEST(MethodFile, PublishedMethodsRenderTheWholePictureOfEveryBuiltInScene) {
+    const MethodList methods = builtin_methods();
+    const Quantities quantities{.planes = {"ao", "indirect", "total"}};
+    for (const char* name : {"nielsen2015", "mara2016_demo"}) {
+        const Method* method = find_method(methods, name);
+        ASSERT_TRUE(method) << name;
+        EXPECT_EQ(method_hash(read_method(print_method(*method))), method_hash(*method)) << name;
+        for (const char* scene : {"cornell", "colonnade", "clutter"}) {
+            EXPECT_NO_THROW(
+                plan_passes(declare_passes(make_builtin_scene(scene), *method, quantities), quantities.planes))
+                << name << " in " << scene;
+        }
+    }
+    EXPECT_EQ(find_method(methods, "nielsen2015")->radiosity.spread_pixels, 300);
+    EXPECT_EQ(find_method(methods, "mara2016_demo")->composite.kind, CompositeKind::demo);
 }
 
 TEST(MethodFile, BuiltInMethodsDifferInTheirLayersOnly) {
