@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "scenes/finite.h"
 #include "scenes/keyed_curve.h"
 

@@ -1,4 +1,6 @@
 // The choices among shadow maps: cubes made in one pass, of linear distances, paraboloids, percentage-closer filtering.
+#include <fmt/format.h>
+
 #include "gl_test.h"
 #include "rasterizer/light_set.h"
 #include "shadow_rays.h"
