@@ -35,7 +35,6 @@ std::string truth_kind(const std::string& truth) {
     return truth.starts_with("within") ? "limited to the method's radius" : truth;
 }
 
-// Three digits that count, without an exponent where the number is large.
 std::string with_interval(double value, double low, double high) {
     if (!std::isfinite(low) || !std::isfinite(high)) return short_number(value);
     return fmt::format("{} [{}, {}]", short_number(value), short_number(low), short_number(high));
