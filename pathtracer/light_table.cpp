@@ -281,7 +281,7 @@ void LightTable::sample_extended(const VertexBatch& receivers, const Lanes<std::
         samples.rise[i] = 0.0f, samples.farthest[i] = 1.0f;
         samples.density[i] = at.inverse_density > 0.0f ? 1.0f / at.inverse_density : 0.0f;
     }
-    for (int i = 0; i < receivers.count; ++i) {
+    for (int i = 0; i < receivers.count && scene_.anything_bulges(); ++i) {
         const LightReceiver receiver = receivers.receiver(i);
         if (!receiver.sees_from_bulge(samples.direction.get(i))) continue;
         samples.set(i, sample_extended(receiver, 0x1p-32 * x[i], y[i]));

@@ -36,6 +36,7 @@ void PathIntegrator::next_event(const VertexBatch& vertices, int vertex, Start s
 // A bulge that reaches into or through another surface would let light in that the surface keeps out.
 void PathIntegrator::close_hidden_bulges(const VertexBatch& vertices, const Lanes<float>& rise, ShadowRays& to_bulges,
                                          Lanes<float>& open, int& rays) const {
+    if (!scene_.anything_bulges()) return;
     to_bulges.rays.count = 0;
     for (int i = 0; i < vertices.count; ++i) {
         if (!(rise[i] > 0.0f && open[i] > 0.0f)) continue;

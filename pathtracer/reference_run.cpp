@@ -64,11 +64,13 @@ ReferenceRun::ReferenceRun(const TracedScene& scene, const EnvironmentDistributi
       integrator_(scene, lights_, layers_ ? &*layers_ : nullptr, plan_.estimation),
       accumulation_(view.width(), view.height(), plan_.estimation, plan_.primary_rays_are_sampled,
                     light_level(scene.scene())),
-      hits_(first_layer(scene, view)),
+      hits_(plan_.primary_rays_are_sampled && plan_.gbuffer.empty() ? std::vector<SurfaceHit>{}
+                                                                    : first_layer(scene, view)),
       sampler_(scene, view, settings, plan_.primary_rays_are_sampled, hits_, integrator_, accumulation_),
       key_(CheckpointKey::of(scene.scene(), scene.span(), view, settings)) {
     state_.begin = state_.end = settings.first_sample;
     find_exact_parts();
+    state_.seconds = seconds_since(begun_);
 }
 
 // What is the same for every sample through a pixel's centre.
@@ -133,7 +135,8 @@ bool ReferenceRun::sample(const ReferenceControl& control) {
     // The first pass, before the pace is known, is what few machines take much longer for; not all of a small image's
     // samples, so that there is something to tell of.
     constexpr double first_pass_rays = 2e6, first_pass_samples = 16.0;
-    const double rays_per_sample = static_cast<double>(hits_.size()) * (1 + 2 * plan_.estimation.bounces);
+    const double rays_per_sample =
+        static_cast<double>(view_.width()) * view_.height() * (1 + 2 * plan_.estimation.bounces);
     const Clock::time_point start = Clock::now();
     Clock::time_point last_checkpoint = start;
     resume(control);

@@ -1,6 +1,7 @@
 // One reference in progress: samples in passes, progress, checkpoints, and the planes in the end.
 #pragma once
 
+#include <chrono>
 #include <optional>
 #include <vector>
 
@@ -41,6 +42,7 @@ private:
         return static_cast<std::size_t>(y) * static_cast<std::size_t>(view_.width()) + static_cast<std::size_t>(x);
     }
 
+    std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();
     const TracedScene& scene_;
     const View& view_;
     const ReferenceSettings& settings_;
@@ -49,7 +51,7 @@ private:
     std::optional<OracleLayers> layers_;
     PathIntegrator integrator_;
     Accumulation accumulation_;
-    std::vector<SurfaceHit> hits_;  // of the rays through the pixels' centres
+    std::vector<SurfaceHit> hits_;  // of the rays through the pixels' centres, where anything asks for them
     TileSampler sampler_;
     ExactParts exact_;
     CheckpointKey key_;

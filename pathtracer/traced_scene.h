@@ -39,6 +39,8 @@ public:
     bool has_delta_lobes() const { return has_delta_lobes_; }  // mirrors or transparency, perhaps
     bool anything_moves() const { return anything_moves_; }
     bool moves(std::uint32_t instance) const { return parts_[instance].steps > 1; }
+    // False: SurfacePoint::bulge is 0 everywhere, since no triangle's normals tell of another surface than its own.
+    bool anything_bulges() const { return anything_bulges_; }
 
     // The nearest hit with nearest <= distance <= farthest, in units of the direction's length. Where `layers` is
     // given, here and below, only what they contain is met.
@@ -106,6 +108,7 @@ private:
     void add(std::uint32_t index, const TimeSpan& span);
     void attach(std::uint32_t index);
     void make_records();
+    template <bool with_bulges>
     void gather_corners(const HitBatch& hits, const MetRays& met, CornerLanes& corners) const;
     void gather_moving_corners(const RayBatch& rays, const HitBatch& hits, const MetRays& met,
                                CornerLanes& corners) const;
@@ -136,7 +139,7 @@ private:
     } table_;
     std::optional<SpecularAlbedo> specular_albedo_;  // where there are specular lobes
     bool has_textures_ = false, has_specular_lobes_ = false, has_transparency_ = false, has_delta_lobes_ = false,
-         anything_moves_ = false;
+         anything_moves_ = false, anything_bulges_ = false;
     RayRecorder* recorder_ = nullptr;
     mutable RTCScene layered_scene_ = nullptr;  // made when the first oracle asks
     mutable std::once_flag layered_scene_made_;

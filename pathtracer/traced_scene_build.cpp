@@ -1,5 +1,6 @@
 // How a TracedScene is built; what is asked of it stands in traced_scene.cpp.
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <limits>
 
@@ -49,6 +50,22 @@ void check_indices(const Scene& scene) {
     }
 }
 
+// Whether some point of the triangle may bulge by more than its rounding error (TracedScene::surface_point). Linear in
+// the point, what each corner adds is largest at one of the other two.
+bool may_bulge(const std::array<glm::vec3, 3>& corners, const std::array<glm::vec3, 3>& normals) {
+    const TracedTriangle triangle{corners[0], corners[1], corners[2]};
+    const glm::vec3 scaled_normal = triangle.scaled_normal();
+    const float length = glm::length(scaled_normal);
+    if (!(length > 0.0f)) return false;
+    float front = 0.0f, back = 0.0f;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const float first = glm::dot(corners[k] - corners[(k + 1) % 3], normals[k]);
+        const float second = glm::dot(corners[k] - corners[(k + 2) % 3], normals[k]);
+        front += std::max({0.0f, first, second}), back += std::max({0.0f, -first, -second});
+    }
+    return std::max(front, back) > glm::dot(glm::abs(scaled_normal), triangle.error()) / length;
+}
+
 }  // namespace
 
 TracedScene::TracedScene(const Scene& scene, const TimeSpan& span)
@@ -66,7 +83,13 @@ TracedScene::TracedScene(const Scene& scene, const TimeSpan& span)
     reserve(span);
     for (std::uint32_t i = 0; i < parts_.size(); ++i) add(i, span);
     for (std::uint32_t i = 0; i < parts_.size(); ++i) attach(i);
-    if (!anything_moves_) make_records();
+    if (anything_moves_) {
+        anything_bulges_ = std::ranges::any_of(normals_, [](const glm::vec3& n) { return n != glm::vec3(0.0f); });
+    } else {
+        make_records();
+        anything_bulges_ = std::ranges::any_of(
+            records_, [](const TriangleRecord& record) { return may_bulge(record.positions, record.normals); });
+    }
     if (has_specular_lobes_) specular_albedo_.emplace();
     rtcCommitScene(embree_scene_);
     check_embree(device_, scene_, "building its tree");
