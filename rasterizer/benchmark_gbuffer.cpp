@@ -1,7 +1,8 @@
-// What the layers of the G-buffer cost at 640x360 over the number of triangles: one layer, two passes against one, and
-// layers selected by a geometry shader against the vertex shader: `bench_gbuffer --benchmark_filter=delay`.
+// What the layers of the G-buffer cost over the number of triangles, at three sizes: one layer, two passes against one,
+// and layers selected by a geometry shader against the vertex shader: `bench_gbuffer --benchmark_filter=delay`.
 //
 // The scene is four wavy sheets, one behind the other, that fill the view: what grows is the number of triangles alone.
+// `fragments` are those that rasterizing them gives, over all layers that they are sent to; most fail a depth test.
 // Times are the pipeline's own, of frames that have a history.
 #include <cmath>
 #include <map>
@@ -16,14 +17,16 @@
 namespace plumb {
 namespace {
 
-// Four sheets of 2 * side^2 triangles each.
+constexpr int sheet_count = 4;
+
+// Sheets of 2 * side^2 triangles each.
 const Scene& sheets(int side) {
     static std::map<int, Scene> made;
     Scene& scene = made[side];
     if (!scene.meshes.empty()) return scene;
     scene.name = "sheets";
     scene.materials.emplace_back();
-    for (int sheet = 0; sheet < 4; ++sheet) {
+    for (int sheet = 0; sheet < sheet_count; ++sheet) {
         Mesh mesh;
         mesh.name = "sheet";
         const float z = -2.0f - static_cast<float>(sheet);
@@ -63,11 +66,20 @@ constexpr GBufferCase cases[] = {{"one layer", 1, LayerGeneration::peel, geometr
                                  {"delay, vertex shader", 2, LayerGeneration::delay, vertex},
                                  {"previous, geometry shader", 2, LayerGeneration::previous, geometry},
                                  {"previous, vertex shader", 2, LayerGeneration::previous, vertex},
+                                 {"predict, geometry shader", 2, LayerGeneration::predict, geometry},
+                                 {"predict, vertex shader", 2, LayerGeneration::predict, vertex},
                                  {"reproject, geometry shader", 2, LayerGeneration::reproject, geometry},
                                  {"reproject, vertex shader", 2, LayerGeneration::reproject, vertex}};
 
+// How many layers' worth of depth every triangle is drawn to: delay and predict draw that of the next frame besides.
+int drawn_layers(const GBufferCase& asked) {
+    const bool looks_ahead = asked.generation == LayerGeneration::delay || asked.generation == LayerGeneration::predict;
+    return asked.layers + (looks_ahead ? 1 : 0);
+}
+
+// Arguments: height of the image, triangles along a side of a sheet.
 void measure(benchmark::State& state, const GBufferCase& asked) {
-    const Scene& scene = sheets(static_cast<int>(state.range(0)));
+    const Scene& scene = sheets(static_cast<int>(state.range(1)));
     Method method;
     method.gbuffer.layers = asked.layers;
     method.gbuffer.generation = asked.generation;
@@ -78,7 +90,7 @@ void measure(benchmark::State& state, const GBufferCase& asked) {
         for (const char* plane : {"depth", "normal", "albedo"})
             quantities.planes.push_back(layer_prefix(layer) + plane);
     }
-    const int width = 640, height = 360;
+    const int height = static_cast<int>(state.range(0)), width = height * 16 / 9;
     try {
         Pipeline pipeline(benchmark_context(), scene, method, quantities, width, height);
         const View view(Camera::look_at("front", {0, 0, 0}, {0, 0, -1}, 0.9f), width, height);
@@ -94,7 +106,9 @@ void measure(benchmark::State& state, const GBufferCase& asked) {
         return;
     }
     state.counters["triangles"] = static_cast<double>(scene.triangle_count());
-    state.counters["pixels"] = static_cast<double>(width) * height;
+    const double pixels = static_cast<double>(width) * height;
+    state.counters["pixels"] = pixels;
+    state.counters["fragments"] = pixels * sheet_count * drawn_layers(asked);
     state.SetLabel(benchmark_context().info().renderer);
 }
 
@@ -106,10 +120,8 @@ int main(int argument_count, char** arguments) {
     if (benchmark::ReportUnrecognizedArguments(argument_count, arguments)) return 2;
     for (const plumb::GBufferCase& one : plumb::cases) {
         benchmark::RegisterBenchmark(one.name, [&one](benchmark::State& state) { plumb::measure(state, one); })
-            ->Arg(16)
-            ->Arg(64)
-            ->Arg(256)
-            ->ArgName("side")
+            ->ArgsProduct({{180, 360, 720}, {16, 64, 256}})
+            ->ArgNames({"height", "side"})
             ->UseManualTime()
             ->Iterations(7)
             ->Unit(benchmark::kMillisecond);

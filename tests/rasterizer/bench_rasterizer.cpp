@@ -1,6 +1,9 @@
 // Milliseconds of each pass at three sizes, on the colonnade: `bench_rasterizer --benchmark_filter=direct`.
 // Light volumes, shadow maps by kind and further bounces have benchmarks of their own (bench_lights, bench_radiosity).
 //
+// `taps` are the texels that a pass looks at for all pixels, each layer by itself: what it would cost per tap is
+// `ns_per_tap`. Of `direct` and `lamp highlights` they are the lights that are evaluated, of rays the most steps that
+// they may take; passes that read each plane once, or draw triangles, have none.
 // Only the passes that the measured one needs run with it. Times are the pipeline's own (GPU timer queries, or glFinish
 // and the steady clock on a software rasteriser), without read-back.
 #include <algorithm>
@@ -23,7 +26,29 @@ struct PassCase {
     const char* pass;
     std::vector<std::string> planes;  // what to ask for, so that the pass runs
     std::function<void(Method&)> change = [](Method&) {};
+    std::function<double(const Method&)> taps_per_pixel = [](const Method&) { return 0.0; };
 };
+
+double taps_of_obscurance(const Method& method) { return static_cast<double>(method.ao.samples) * method.ao.layers; }
+
+double taps_of_radiosity(const Method& method) {
+    return static_cast<double>(method.radiosity.samples) * method.radiosity.layers;
+}
+
+double taps_of_blur(const BilateralBlurSettings& blur) { return 2.0 * (2 * blur.radius + 1); }
+
+// Of the colonnade: a sun and a lamp.
+double lights(const Method&) { return 2.0; }
+
+// A texel of every level, and the four finer ones that each coarser texel averages.
+double texels_of_radiance_chain(const Method& method) { return method.reflections.layers * (1.0 + 4.0 / 3.0); }
+
+double steps_of_rays(const Method& method) {
+    return static_cast<double>(method.reflections.max_steps) * method.reflections.layers;
+}
+
+// The nine of the clamp, and sixteen of the history.
+double taps_of_antialias(const Method&) { return 25.0; }
 
 // Rays that end at once, where the time of a pass beside them is asked for.
 void reflect_shortly(Method& method) { method.reflections.enabled = true, method.reflections.max_steps = 8; }
@@ -34,26 +59,39 @@ void reflect_probe(Method& method) {
     method.probe.y = 2.0f, method.probe.every_frame = true;
 }
 
+void nothing_else(Method&) {}
+
 const std::vector<PassCase> pass_cases{
     {"gbuffer", {"depth", "normal", "albedo"}},
     {"gbuffer.layer2", {"layer2.depth", "layer2.normal", "layer2.albedo"}},
     {"motion", {"motion"}},
-    {"depth MIP chain", {"ao"}},
-    {"ambient obscurance", {"ao"}},
-    {"ambient obscurance blur", {"ao"}},
+    // A copy, and a texel of each coarser level.
+    {"depth MIP chain", {"ao"}, nothing_else, [](const Method&) { return 4.0 / 3.0; }},
+    {"ambient obscurance", {"ao"}, nothing_else, taps_of_obscurance},
+    {"ambient obscurance blur",
+     {"ao"},
+     nothing_else,
+     [](const Method& method) { return taps_of_blur(method.ao.blur); }},
     {"shadows", {"direct"}},
-    {"direct", {"direct"}},
-    {"direct.layer2", {"layer2.direct"}},
-    {"radiosity", {"indirect"}},
-    {"radiosity blur", {"indirect"}},
+    {"direct", {"direct"}, nothing_else, lights},
+    {"direct.layer2", {"layer2.direct"}, nothing_else, lights},
+    {"radiosity", {"indirect"}, nothing_else, taps_of_radiosity},
+    {"radiosity blur",
+     {"indirect"},
+     nothing_else,
+     [](const Method& method) { return taps_of_blur(method.radiosity.blur); }},
     {"radiosity reflection", {"indirect"}},
-    {"radiosity carried on", {"indirect"}, [](Method& method) { method.radiosity.carry = true; }},
-    {"lamp highlights", {"reflection"}, reflect_shortly},
-    {"radiance MIP chain", {"reflection"}, reflect_shortly},
-    {"reflections", {"reflection"}, [](Method& method) { method.reflections.enabled = true; }},
+    // The depth of each layer where the point was before.
+    {"radiosity carried on",
+     {"indirect"},
+     [](Method& method) { method.radiosity.carry = true; },
+     [](const Method& method) { return static_cast<double>(method.radiosity.layers); }},
+    {"lamp highlights", {"reflection"}, reflect_shortly, lights},
+    {"radiance MIP chain", {"reflection"}, reflect_shortly, texels_of_radiance_chain},
+    {"reflections", {"reflection"}, [](Method& method) { method.reflections.enabled = true; }, steps_of_rays},
     {"probe", {"reflection"}, reflect_probe},
     {"composite", {"total"}},
-    {"temporal antialias", {"total"}, [](Method& method) { method.antialias.temporal = true; }},
+    {"temporal antialias", {"total"}, [](Method& method) { method.antialias.temporal = true; }, taps_of_antialias},
 };
 
 // Every surface slightly glossy, so that reflections have something to do.
@@ -81,12 +119,19 @@ void measure(benchmark::State& state, GlContext& context, const Scene& scene, co
     Pipeline pipeline(context, scene, method, quantities, width, height);
     const View view(scene.camera("court"), width, height);
     pipeline.time_passes(view);  // the first frame compiles what drivers compile late
+    double total = 0.0;
     for (auto _ : state) {
         const double seconds = seconds_of(pass_case.pass, pipeline, view, state);
         if (seconds < 0.0) return;
         state.SetIterationTime(seconds);
+        total += seconds;
     }
-    state.counters["pixels"] = static_cast<double>(width) * height;
+    const double pixels = static_cast<double>(width) * height, taps = pixels * pass_case.taps_per_pixel(method);
+    state.counters["pixels"] = pixels;
+    if (taps > 0.0) {
+        state.counters["taps"] = taps;
+        state.counters["ns_per_tap"] = 1e9 * total / (static_cast<double>(state.iterations()) * taps);
+    }
     state.counters["GL_MiB"] = static_cast<double>(context.allocated_bytes()) / (1024.0 * 1024.0);
 }
 
