@@ -47,11 +47,10 @@ double mean_emission(const Scene& scene, const Material& material) {
     if (material.emission_texture == no_texture) return luminance(material.emission);
     const Texture& texture = scene.textures[material.emission_texture];
     double sum = 0.0;
-    for (std::size_t i = 0; i < texture.texels.size(); i += 4) {
-        sum +=
-            luminance(material.emission * glm::vec3(texture.texels[i], texture.texels[i + 1], texture.texels[i + 2]));
+    for (std::size_t i = 0; i < texture.value_count(); i += 4) {
+        sum += luminance(material.emission * glm::vec3(texture.value(i), texture.value(i + 1), texture.value(i + 2)));
     }
-    return texture.texels.empty() ? 0.0 : 4.0 * sum / static_cast<double>(texture.texels.size());
+    return texture.value_count() == 0 ? 0.0 : 4.0 * sum / static_cast<double>(texture.value_count());
 }
 
 // A point on a triangle that emits, as a receiver sees it. Without branches, for loops over lanes.

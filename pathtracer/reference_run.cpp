@@ -34,7 +34,11 @@ double light_level(const Scene& scene) {
     const Bounds bounds = scene.bounds();
     // Without a surface there is nothing for local lights to shine on.
     const double squared_size = bounds.empty() ? HUGE_VAL : std::pow(static_cast<double>(bounds.diagonal()), 2.0);
-    double level = luminance(scene.environment.radiance);
+    // A texel of an image may be a sun: it counts as far as it would fill the exact sums with a few hundred samples,
+    // and no more, or what the rest of the image gives would be rounded coarsely.
+    constexpr double sun_share = 0x1p-12;
+    double level = std::max(static_cast<double>(luminance(scene.environment.radiance)),
+                            sun_share * static_cast<double>(scene.brightest_emission()));
     for (const Material& material : scene.materials)
         level = std::max(level, static_cast<double>(luminance(material.emission)));
     for (const PointLight& light : scene.point_lights) level += luminance(light.intensity) / squared_size;

@@ -101,7 +101,9 @@ PLUMBLINE_INLINE void fetch_texels(const Texture& texture, const glm::vec2& uv) 
     const glm::vec2 size(texture.width, texture.height);
     const glm::ivec2 first = glm::max((uv - glm::floor(uv)) * size - 0.5f, glm::vec2(0.0f));
     for (const int row : {first.y, std::min(first.y + 1, texture.height - 1)}) {
-        __builtin_prefetch(&texture.texels[4 * (static_cast<std::size_t>(row) * texture.width + first.x)]);
+        const std::size_t texel = 4 * (static_cast<std::size_t>(row) * texture.width + first.x);
+        __builtin_prefetch(texture.is_wide() ? static_cast<const void*>(&texture.wide_texels[texel])
+                                             : static_cast<const void*>(&texture.texels[texel]));
     }
 }
 

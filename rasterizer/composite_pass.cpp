@@ -88,7 +88,7 @@ CompositePass::CompositePass(const PassResources& resources)
         const bool read = is_read(term.plane, resources.scene, resources.method);
         planes_.push_back(read ? &resources.planes.get(plane_of(term, resources.scene, resources.method)) : nullptr);
     }
-    const GLenum format = resources.method.reflections.enabled ? GL_RGBA32F : GL_RGBA16F;
+    const GLenum format = resources.method.reflections.enabled ? GL_RGBA32F : emission_format(resources.scene);
     const GlTexture& total = resources.planes.create(composited_plane(resources.method), format, 1);
     target_ = GlFramebuffer(resources.context, std::array{GlAttachment{&total}}, {}, "composite");
 }

@@ -1,5 +1,6 @@
-// The sum that a camera sees: the plane `total`, RGBA16F; with reflections, whose highlights may exceed half floats,
-// RGBA32F. Where it is anti-aliased over frames (temporal_antialias.h), this is the plane `total.aliased`.
+// The sum that a camera sees: the plane `total`, RGBA16F; with reflections, whose highlights may exceed half floats, or
+// lights that do, RGBA32F. Where it is anti-aliased over frames (temporal_antialias.h), this is the plane
+// `total.aliased`.
 //
 //     physical   emission + direct + indirect + reflection       each term stands on its own: nothing multiplies it
 //     demo       emission + (0.35 + 0.65 v) direct + c v indirect + (1 - 0.7 c) v albedo / pi E_ambient

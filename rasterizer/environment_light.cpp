@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 #include <glm/gtc/constants.hpp>
 
+#include "rasterizer/scene_texture.h"
+
 namespace plumb {
 namespace {
 
@@ -68,17 +70,7 @@ glm::vec3 irradiance_from(const IrradianceCoefficients& coefficients, const glm:
 
 EnvironmentLight::EnvironmentLight(GlContext& context, const Scene& scene) : scene_(scene) {
     if (scene.environment.texture == no_texture) return;
-    const Texture& source = scene.textures[scene.environment.texture];
-    texture_ = GlTexture::flat(context, GL_RGBA16F, source.width, source.height);
-    context.gl.TextureSubImage2D(texture_.id(), 0, 0, 0, source.width, source.height, GL_RGBA, GL_HALF_FLOAT,
-                                 source.texels.data());
-    texture_.set_filter(GL_LINEAR, GL_LINEAR);
-    const auto gl_wrap = [](TextureWrap wrap) {
-        return wrap == TextureWrap::repeat  ? GL_REPEAT
-               : wrap == TextureWrap::clamp ? GL_CLAMP_TO_EDGE
-                                            : GL_MIRRORED_REPEAT;
-    };
-    texture_.set_wrap(gl_wrap(source.wrap_u), gl_wrap(source.wrap_v));
+    texture_ = upload(context, scene.textures[scene.environment.texture]);
 }
 
 ShaderDefines EnvironmentLight::radiance_defines(GLuint unit) const {

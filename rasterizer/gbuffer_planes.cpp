@@ -26,9 +26,10 @@ constexpr std::array<GBufferPlane, 9> gbuffer_planes = {{{"depth", nullptr},
                                                          {"displacement", "WRITE_DISPLACEMENT"},
                                                          {"camera_position", "WRITE_POSITION"}}};
 
-GLenum format_of(std::string_view plane, const Method& method) {
+GLenum format_of(std::string_view plane, const Scene& scene, const Method& method) {
     if (plane == "depth") return GL_R32F;
     if (plane == "normal") return texture_format(method.gbuffer.normal_format);
+    if (plane == "emission") return emission_format(scene);
     if (plane == "roughness") return GL_R16F;
     return plane == "displacement" || plane == "camera_position" ? GL_RGBA32F : GL_RGBA16F;
 }
@@ -58,7 +59,8 @@ GlTexture& create_gbuffer_planes(const PassResources& resources, int depth_layer
     for (const GBufferPlane& plane : gbuffer_planes) {
         const std::string name(plane.name);
         if (name == "depth" || !any_layer_is_read(resources, name)) continue;
-        planes.create(name, format_of(name, resources.method), std::max(least_layers, resources.layers_of(name)));
+        planes.create(name, format_of(name, resources.scene, resources.method),
+                      std::max(least_layers, resources.layers_of(name)));
     }
     return depth;
 }
@@ -117,6 +119,10 @@ float separation_in_metres(const GBufferSettings& settings, const Camera& camera
     const float unit =
         settings.separation_unit == SeparationUnit::frustum ? camera.far_plane - camera.near_plane : 1.0f;
     return settings.minimum_separation * unit;
+}
+
+GLenum emission_format(const Scene& scene) {
+    return scene.brightest_emission() > largest_half ? GL_RGBA32F : GL_RGBA16F;
 }
 
 GLenum texture_format(RadianceFormat format) {

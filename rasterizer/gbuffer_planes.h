@@ -9,7 +9,8 @@
 //                               albedo (scenes/specular_albedo.h)
 //   specular         RGBA16F    f0 in rgb, f90 in a (scenes/material.h); 0: there is no specular lobe
 //   roughness        R16F       perceptual
-//   emission         RGBA16F    in the first layer also the environment's radiance where nothing is in front of it
+//   emission         RGBA16F    in the first layer also the environment's radiance where nothing is in front of it;
+//                               RGBA32F where the scene holds brighter light than half floats do
 //   displacement     RGBA32F    where the surface point of an instance that moves was in the frame before minus where
 //   it
 //                               is, camera space of now, metres
@@ -60,6 +61,8 @@ std::string diffuse_albedo_plane(const Scene& scene, const Method& method);
 // Metres along the view axis.
 float separation_in_metres(const GBufferSettings& settings, const Camera& camera);
 
+// The format of what holds emitted light as it is: with 16 bits, or 32 where the scene has brighter light.
+GLenum emission_format(const Scene& scene);
 // The format of lit radiance.
 GLenum texture_format(RadianceFormat format);
 

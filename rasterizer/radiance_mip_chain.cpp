@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "rasterizer/gbuffer_planes.h"
+
 namespace plumb {
 namespace {
 
@@ -59,7 +61,8 @@ void SurfaceRadiancePlanes::bind() const {
 RadianceMipChainPass::RadianceMipChainPass(const PassResources& resources)
     : sources_(resources.planes, SurfaceRadiance(resources.scene, resources.method, resources.quantities)),
       depth_(resources.planes.get("depth")),
-      chain_(resources.planes.create(radiance_chain_plane, GL_RGBA16F, resources.method.reflections.layers,
+      chain_(resources.planes.create(radiance_chain_plane, emission_format(resources.scene),
+                                     resources.method.reflections.layers,
                                      1 + coarsest_radiance_level(resources.planes.width(), resources.planes.height()))),
       first_level_(resources.context, resources.programs, "radiance_mip_chain.frag", defines_of_level(resources, true)),
       further_levels_(resources.context, resources.programs, "radiance_mip_chain.frag",

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "rasterizer/gl_error.h"
+#include "rasterizer/scene_texture.h"
 
 namespace plumb {
 namespace {
@@ -59,18 +59,6 @@ void append_with_face_normals(const Mesh& mesh, std::vector<Vertex>& vertices, s
             indices.push_back(next++);
         }
     }
-}
-
-GLint gl_wrap(TextureWrap wrap) {
-    switch (wrap) {
-        case TextureWrap::repeat:
-            return GL_REPEAT;
-        case TextureWrap::clamp:
-            return GL_CLAMP_TO_EDGE;
-        case TextureWrap::mirror:
-            return GL_MIRRORED_REPEAT;
-    }
-    return GL_REPEAT;
 }
 
 Bounds world_bounds(const Mesh& mesh, const glm::mat4& world_from_object) {
@@ -249,21 +237,7 @@ void SceneGeometry::move_to(const Moment& now, const Moment& previous, const Mom
 }
 
 void SceneGeometry::upload_textures() {
-    const GladGLContext& gl = context_.gl;
-    GLint limit = 0;
-    gl.GetIntegerv(GL_MAX_TEXTURE_SIZE, &limit);
-    for (const Texture& texture : scene_.textures) {
-        if (texture.width > limit || texture.height > limit) {
-            throw GlError(fmt::format("texture '{}' is {}x{}, this OpenGL takes {} at most; scale it down",
-                                      texture.name, texture.width, texture.height, limit));
-        }
-        GlTexture& uploaded =
-            textures_.emplace_back(GlTexture::flat(context_, GL_RGBA16F, texture.width, texture.height));
-        gl.TextureSubImage2D(uploaded.id(), 0, 0, 0, texture.width, texture.height, GL_RGBA, GL_HALF_FLOAT,
-                             texture.texels.data());
-        uploaded.set_filter(GL_LINEAR, GL_LINEAR);
-        uploaded.set_wrap(gl_wrap(texture.wrap_u), gl_wrap(texture.wrap_v));
-    }
+    for (const Texture& texture : scene_.textures) textures_.push_back(upload(context_, texture));
 }
 
 void SceneGeometry::bind_textures(const Material& material, const MaterialVariant& variant) const {

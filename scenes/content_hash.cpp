@@ -101,6 +101,7 @@ std::uint64_t Scene::content_hash() const {
         hasher.add(texture.wrap_u);
         hasher.add(texture.wrap_v);
         hasher.add(texture.texels);
+        if (texture.is_wide()) hasher.add(texture.wide_texels);
     }
     hasher.add(point_lights.size());
     for (const PointLight& light : point_lights) {

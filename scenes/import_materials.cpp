@@ -81,12 +81,12 @@ struct ChannelRange {
 ChannelRange range_of(const Texture& texture, int channel) {
     ChannelRange range;
     double sum = 0.0;
-    for (std::size_t i = static_cast<std::size_t>(channel); i < texture.texels.size(); i += 4) {
-        const float value = texture.texels[i];
+    for (std::size_t i = static_cast<std::size_t>(channel); i < texture.value_count(); i += 4) {
+        const float value = texture.value(i);
         range.lowest = std::min(range.lowest, value);
         sum += value;
     }
-    range.mean = static_cast<float>(sum / (0.25 * static_cast<double>(texture.texels.size())));
+    range.mean = static_cast<float>(sum / (0.25 * static_cast<double>(texture.value_count())));
     return range;
 }
 
@@ -204,8 +204,7 @@ private:
             if (file) return load_texture(*file, content);
             note(
                 "material '{}': texture '{}' not found beside the file; a magenta checker stands in. Put the image "
-                "there or "
-                "correct the path",
+                "there or correct the path",
                 material, path);
         } catch (const SceneError& error) {
             note("material '{}': {}; a magenta checker stands in", material, error.what());

@@ -1,5 +1,7 @@
 #include "scenes/scene.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -101,6 +103,18 @@ glm::vec3 Scene::environment_radiance(const glm::vec3& direction) const {
     if (environment.texture == no_texture) return environment.radiance;
     const glm::vec2 uv = environment.texture_coordinates(direction);
     return environment.radiance * glm::vec3(textures[environment.texture].sample(uv));
+}
+
+float Scene::brightest_emission() const {
+    const auto brightest = [this](const glm::vec3& factor, int texture) {
+        const float largest = std::max({factor.x, factor.y, factor.z});
+        return largest > 0.0f && texture != no_texture ? largest * textures[texture].brightest() : largest;
+    };
+    float largest = brightest(environment.radiance, environment.texture);
+    for (const Material& material : materials) {
+        largest = std::max(largest, brightest(material.emission, material.emission_texture));
+    }
+    return largest;
 }
 
 }  // namespace plumb

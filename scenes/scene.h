@@ -93,6 +93,9 @@ struct Scene {
     // Radiance of the environment from unit `direction`.
     glm::vec3 environment_radiance(const glm::vec3& direction) const;
 
+    // No channel of the radiance that surfaces emit, or that the environment sends, is above it.
+    float brightest_emission() const;
+
     // A 64-bit hash of everything that can change a pixel: geometry and its motion, materials, texels, lights; not
     // cameras, paths, names.
     std::uint64_t content_hash() const;

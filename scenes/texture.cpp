@@ -1,6 +1,8 @@
 #include "scenes/texture.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #ifdef __F16C__
 #include <immintrin.h>
@@ -34,6 +36,12 @@ Rgba rgba(const half* texel) {
 #endif
 }
 
+Rgba rgba(const float* texel) {
+    Rgba value;
+    std::memcpy(&value, texel, sizeof value);
+    return value;
+}
+
 }  // namespace
 
 glm::vec4 Texture::sample(glm::vec2 uv) const {
@@ -51,10 +59,21 @@ glm::vec4 Texture::sample(glm::vec2 uv) const {
     const int x1 = wrapped(static_cast<int>(x_floor) + 1, width, wrap_u);
     const int y0 = wrapped(static_cast<int>(y_floor), height, wrap_v);
     const int y1 = wrapped(static_cast<int>(y_floor) + 1, height, wrap_v);
-    const auto texel = [&](int i, int j) { return rgba(&texels[4 * (static_cast<std::size_t>(j) * width + i)]); };
     const auto mixed = [](Rgba from, Rgba to, float share) { return from * (1.0f - share) + to * share; };
-    const Rgba value = mixed(mixed(texel(x0, y0), texel(x1, y0), fx), mixed(texel(x0, y1), texel(x1, y1), fx), fy);
+    const auto bilinear = [&](const auto* values) {
+        const auto texel = [&](int i, int j) { return rgba(&values[4 * (static_cast<std::size_t>(j) * width + i)]); };
+        return mixed(mixed(texel(x0, y0), texel(x1, y0), fx), mixed(texel(x0, y1), texel(x1, y1), fx), fy);
+    };
+    const Rgba value = is_wide() ? bilinear(wide_texels.data()) : bilinear(texels.data());
     return {value[0], value[1], value[2], value[3]};
+}
+
+float Texture::brightest() const {
+    float largest = 0.0f;
+    for (std::size_t i = 0; i < value_count(); ++i) {
+        if (i % 4 != 3) largest = std::max(largest, value(i));
+    }
+    return largest;
 }
 
 }  // namespace plumb

@@ -29,8 +29,33 @@ std::array<half, 256> code_values(TextureContent content) {
     return values;
 }
 
-// Largest finite half; radiance above it (the sun's disc in some skies) is cut there.
-constexpr float largest_half = 65504.0f;
+// Where each of R, G, B, A comes from; -1: alpha is 1.
+using ChannelMap = std::array<int, 4>;
+
+ChannelMap channel_map(int channels) {
+    if (channels == 1) return {0, 0, 0, -1};
+    if (channels == 2) return {0, 0, 0, 1};
+    return {0, 1, 2, channels > 3 ? 3 : -1};
+}
+
+// `values` are those of a picture of floats, as they lie in the file.
+void require_light(const std::vector<float>& values, const OIIO::ImageSpec& spec, TextureContent content,
+                   const std::string& name) {
+    const auto channels = static_cast<std::size_t>(spec.nchannels), width = static_cast<std::size_t>(spec.width);
+    const ChannelMap from = channel_map(spec.nchannels);
+    for (std::size_t pixel = 0; pixel < values.size() / channels; ++pixel) {
+        for (int c = 0; c < 4; ++c) {
+            if (from[c] < 0) continue;
+            const float value = values[pixel * channels + static_cast<std::size_t>(from[c])];
+            const bool is_light = content == TextureContent::colour && c < 3;
+            if (std::isfinite(value) && !(is_light && value < 0.0f)) continue;
+            throw SceneError(fmt::format(
+                "texture '{0}': channel {1} of pixel ({2}, {3}) is {4}, and must be {5}; repair the picture, for "
+                "example with: oiiotool '{0}' --fixnan box3 --clamp:min=0 -o repaired.exr",
+                name, from[c], pixel % width, pixel / width, value, is_light ? "finite and not negative" : "finite"));
+        }
+    }
+}
 
 Texture read(ImageInput& input, const std::string& name, TextureContent content) {
     const OIIO::ImageSpec& spec = input.spec();
@@ -40,17 +65,13 @@ Texture read(ImageInput& input, const std::string& name, TextureContent content)
     texture.width = spec.width;
     texture.height = spec.height;
     const std::size_t pixels = static_cast<std::size_t>(spec.width) * spec.height;
-    texture.texels.resize(4 * pixels);
 
-    // Where each of R, G, B, A comes from; -1: alpha is 1.
-    const int last = channels - 1;
-    const std::array<int, 4> from = channels == 1   ? std::array{0, 0, 0, -1}
-                                    : channels == 2 ? std::array{0, 0, 0, 1}
-                                                    : std::array{0, 1, 2, std::min(last, 3) == 3 ? 3 : -1};
-    const auto fill = [&](const auto& source, auto&& convert) {
+    const ChannelMap from = channel_map(channels);
+    const auto fill = [&](auto& texels, const auto& source, auto&& convert) {
+        texels.resize(4 * pixels, 1.0f);
         for (std::size_t i = 0; i < pixels; ++i) {
             for (int c = 0; c < 4; ++c) {
-                texture.texels[4 * i + c] = from[c] < 0 ? half(1.0f) : convert(source[i * channels + from[c]], c == 3);
+                if (from[c] >= 0) texels[4 * i + c] = convert(source[i * channels + from[c]], c == 3);
             }
         }
     };
@@ -64,15 +85,20 @@ Texture read(ImageInput& input, const std::string& name, TextureContent content)
         std::vector<unsigned char> values;
         read_into(values, TypeDesc::UINT8);
         const std::array<half, 256> colour = code_values(content), data = code_values(TextureContent::data);
-        fill(values, [&](unsigned char code, bool alpha) { return alpha ? data[code] : colour[code]; });
+        fill(texture.texels, values, [&](unsigned char code, bool alpha) { return alpha ? data[code] : colour[code]; });
     } else {
         std::vector<float> values;
         read_into(values, TypeDesc::FLOAT);
+        if (spec.format.is_floating_point()) require_light(values, spec, content, name);
         const bool encoded = content == TextureContent::colour && !spec.format.is_floating_point();
-        fill(values, [&](float value, bool alpha) {
-            if (encoded && !alpha) value = linear_from_srgb(value);
-            return half(std::isfinite(value) ? glm::clamp(value, -largest_half, largest_half) : 0.0f);
-        });
+        const auto linear = [&](float value, bool alpha) {
+            return encoded && !alpha ? linear_from_srgb(value) : value;
+        };
+        if (std::ranges::any_of(values, [](float value) { return std::abs(value) > largest_half; })) {
+            fill(texture.wide_texels, values, linear);
+        } else {
+            fill(texture.texels, values, [&](float value, bool alpha) { return half(linear(value, alpha)); });
+        }
     }
     return texture;
 }
@@ -108,12 +134,14 @@ Texture decode_texture(std::span<const std::byte> bytes, const std::string& name
 }
 
 void flip_rows(Texture& texture) {
-    const std::ptrdiff_t row = 4 * static_cast<std::ptrdiff_t>(texture.width);
-    for (int j = 0; j < texture.height / 2; ++j) {
-        const auto upper = texture.texels.begin() + j * row;
-        const auto lower = texture.texels.begin() + (texture.height - 1 - j) * row;
-        std::swap_ranges(upper, upper + row, lower);
-    }
+    const auto flip = [&](auto& texels) {
+        const std::ptrdiff_t row = 4 * static_cast<std::ptrdiff_t>(texture.width);
+        for (int j = 0; j < texture.height / 2; ++j) {
+            const auto upper = texels.begin() + j * row, lower = texels.begin() + (texture.height - 1 - j) * row;
+            std::swap_ranges(upper, upper + row, lower);
+        }
+    };
+    texture.is_wide() ? flip(texture.wide_texels) : flip(texture.texels);
 }
 
 Texture missing_texture(const std::string& name) {

@@ -16,7 +16,8 @@ enum class TextureContent {
 };
 
 // Reads the first image of `file`. One channel becomes grey, two grey with alpha; a missing alpha is 1. Throws
-// SceneError that names the file and the reason.
+// SceneError that names the file and the reason: it cannot be read, or it holds floats that are not finite, or colours
+// below 0.
 Texture load_texture(const std::filesystem::path& file, TextureContent content);
 
 // The same from a picture file held in memory (an image embedded in a scene file); `name` must keep its extension where

@@ -139,8 +139,7 @@ private:
         if (!glm::all(glm::lessThanEqual(out, glm::vec3(1.0f + 1e-5f)))) {
             fail(
                 "material '{}': base colour and transmission add up to ({}, {}, {}); more light would leave than "
-                "arrives, "
-                "lower one of them",
+                "arrives, lower one of them",
                 material.name, out.x, out.y, out.z);
         }
         check_light(material.emission, "material", material.name);
@@ -155,9 +154,9 @@ private:
 
     void check_texture(const Texture& texture) const {
         if (texture.width <= 0 || texture.height <= 0 ||
-            texture.texels.size() != 4 * static_cast<std::size_t>(texture.width) * texture.height) {
+            texture.value_count() != 4 * static_cast<std::size_t>(texture.width) * texture.height) {
             fail("texture '{}' is {}x{} with {} values", texture.name, texture.width, texture.height,
-                 texture.texels.size());
+                 texture.value_count());
         }
     }
 

@@ -2,6 +2,7 @@
 #include <glm/gtc/constants.hpp>
 #include <gtest/gtest.h>
 
+#include "tests/bright_sky.h"
 #include "tests/pathtracer/closed_forms.h"
 #include "tests/pathtracer/test_scenes.h"
 
@@ -147,6 +148,22 @@ TEST_P(EmitterStrategies, ConstantEnvironmentOverAnOpenPlaneIsAlbedoTimesRadianc
         }
     }
 }
+// The integral of L cos(theta) over the upper hemisphere, midpoint rule; errs by less than 1e-4 at this step.
+double irradiance_of_sky(const Scene& scene) {
+    double integral = 0.0;
+    constexpr int steps = 1000;
+    for (int j = 0; j < steps; ++j) {
+        const double theta = glm::half_pi<double>() * (j + 0.5) / steps;
+        for (int i = 0; i < steps; ++i) {
+            const double phi = glm::two_pi<double>() * (i + 0.5) / steps;
+            const glm::vec3 direction(std::sin(theta) * std::cos(phi), std::cos(theta),
+                                      std::sin(theta) * std::sin(phi));
+            integral += scene.environment_radiance(direction).x * std::cos(theta) * std::sin(theta);
+        }
+    }
+    return integral * glm::half_pi<double>() / steps * glm::two_pi<double>() / steps;
+}
+
 
 TEST_P(EmitterStrategies, ImageEnvironmentMatchesItsNumericIntegral) {
     Scene scene = floor_scene();
@@ -170,6 +187,31 @@ TEST_P(EmitterStrategies, ImageEnvironmentMatchesItsNumericIntegral) {
     for (int j = 0; j < steps; ++j) {
         const double theta = glm::half_pi<double>() * (j + 0.5) / steps;
         for (int i = 0; i < steps; ++i) {
+// Nothing cuts a sun of a million: neither what the floor gets from it nor what the camera sees of it, antialiased or
+// not; and the sums of its samples stay exact.
+TEST(ImageEnvironment, ASunBrighterThanHalfFloatsKeepsAllItsLight) {
+    const Scene scene = floor_below_bright_sky("exr");
+    const double expected = 0.5 / glm::pi<double>() * irradiance_of_sky(scene);
+    EXPECT_GT(expected, 1e3);  // the sun's: the clear sky gives 0.1
+    const PathTracer tracer(scene);
+    const glm::vec3 eye(0.0f, 2.0f, 0.0f);
+    const View sun_view = view_of(eye, eye + sun_direction(scene), 1e-3f, 4);
+    for (const EmitterSampling sampling : {EmitterSampling::lights, EmitterSampling::both}) {
+        auto settings = settings_for({"direct"}, 1024);
+        settings.emitter_sampling = sampling;
+        expect_mean(tracer.render(floor_view(), settings).frame, "direct", expected);
+    }
+    for (const bool antialias : {false, true}) {
+        auto settings = settings_for({"emission"}, 64);
+        settings.antialias = antialias;
+        const ReferenceResult seen = tracer.render(sun_view, settings);
+        EXPECT_TRUE(seen.exact);
+        // 1 %: the view spans a thousandth of a radian, 0.3 % of the texel, over which the sun fades as a tent.
+        for (const float value : seen.frame.plane("emission").values())
+            EXPECT_NEAR(value, sun_radiance, 0.01f * sun_radiance);
+    }
+}
+
             const double phi = glm::two_pi<double>() * (i + 0.5) / steps;
             const glm::vec3 direction(std::sin(theta) * std::cos(phi), std::cos(theta),
                                       std::sin(theta) * std::sin(phi));

@@ -7,6 +7,7 @@
 #include "rasterizer/pipeline.h"
 #include "ray_caster.h"
 #include "scenes/builtin.h"
+#include "tests/bright_sky.h"
 
 namespace plumb {
 namespace {
@@ -285,6 +286,18 @@ TEST_P(GBufferTest, EnvironmentShinesWhereNothingIs) {
         }
     }
     EXPECT_GT(background, 500);
+}
+
+TEST_P(GBufferTest, ASunBrighterThanHalfFloatsIsNotCut) {
+    const Scene scene = floor_below_bright_sky("exr");
+    const glm::vec3 eye(0.0f, 2.0f, 0.0f);
+    const View view(Camera::look_at("sun", eye, eye + sun_direction(scene), 1e-3f), 4, 4);
+    const Frame frame = render(context(), scene, view, {}, {"emission", "total"});
+    for (const std::string plane : {"emission", "total"}) {
+        // 1 %: the view spans a thousandth of a radian, 0.3 % of the texel, over which the sun fades as a tent.
+        for (const float value : frame.plane(plane).values())
+            ASSERT_NEAR(value, sun_radiance, 0.01f * sun_radiance) << plane;
+    }
 }
 
 TEST(GBuffer, EglAndOsMesaAgree) {

@@ -1,9 +1,16 @@
 #include "scenes/texture.h"
 
+#include <cmath>
+#include <limits>
+
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "scenes/light.h"
+#include "scenes/scene_error.h"
 #include "scenes/texture_file.h"
+#include "tests/bright_sky.h"
+#include "tests/message_of.h"
 
 namespace plumb {
 namespace {
@@ -87,6 +94,53 @@ TEST(Texture, FlippingRowsTwiceChangesNothing) {
     EXPECT_FLOAT_EQ(texture.sample({0.5f, 0.0f}).y, 8.0f);
     flip_rows(texture);
     EXPECT_FLOAT_EQ(texture.sample({0.5f, 0.0f}).y, 0.0f);
+}
+
+TEST(Texture, KeepsASunThatIsBrighterThanHalfFloatsHold) {
+    for (const std::string extension : {"exr", "hdr"}) {
+        const TemporaryFolder folder;
+        const auto file = folder / ("sky." + extension);
+        write_float_picture(file, sky_columns, sky_rows, bright_sky());
+        Texture sky = load_texture(file, TextureContent::colour);
+        const auto at_texel = [&](int column, int row) {
+            return sky.sample(
+                {(static_cast<float>(column) + 0.5f) / sky_columns, (static_cast<float>(row) + 0.5f) / sky_rows});
+        };
+        EXPECT_EQ(at_texel(sun_column, sun_row), glm::vec4(sun_radiance, sun_radiance, sun_radiance, 1.0f));
+        EXPECT_EQ(at_texel(0, 0), glm::vec4(clear_sky_radiance, clear_sky_radiance, clear_sky_radiance, 1.0f));
+        EXPECT_EQ(sky.brightest(), sun_radiance);
+        flip_rows(sky);
+        EXPECT_EQ(at_texel(sun_column, sky_rows - 1 - sun_row).x, sun_radiance);
+        const Scene scene = floor_below_bright_sky(extension);
+        // 1e-3: a float's worth of the direction moves the lookup by 1e-6 of the picture, past texels a million apart.
+        EXPECT_NEAR(scene.environment_radiance(sun_direction(scene)).y, sun_radiance, 1e-3f * sun_radiance);
+        EXPECT_EQ(scene.brightest_emission(), sun_radiance);
+    }
+}
+
+TEST(Texture, OfFloatsThatHalfFloatsHoldStaysSmall) {
+    const TemporaryFolder folder;
+    write_float_picture(folder / "dim.exr", 1, 1, {largest_half, 0.5f, 0.0f});
+    const Texture dim = load_texture(folder / "dim.exr", TextureContent::colour);
+    EXPECT_FALSE(dim.is_wide());
+    EXPECT_EQ(dim.sample({0.5f, 0.5f}), glm::vec4(largest_half, 0.5f, 0.0f, 1.0f));
+}
+
+TEST(Texture, RefusesWhatIsNoRadianceAndSaysWhereAndWhatToDo) {
+    constexpr float infinite = std::numeric_limits<float>::infinity();
+    for (const float bad : {infinite, std::nanf(""), -0.5f}) {
+        const TemporaryFolder folder;
+        std::vector<float> values(std::size_t{3} * 4 * 2, 1.0f);
+        values[3 * 6 + 1] = bad;
+        write_float_picture(folder / "sky.exr", 4, 2, values);
+        EXPECT_THAT(message_of<SceneError>([&] { load_texture(folder / "sky.exr", TextureContent::colour); }),
+                    testing::AllOf(testing::HasSubstr((folder / "sky.exr").string()),
+                                   testing::HasSubstr("channel 1 of pixel (2, 1)"),
+                                   testing::HasSubstr("finite and not negative"), testing::HasSubstr("oiiotool")));
+    }
+    const TemporaryFolder folder;
+    write_float_picture(folder / "data.exr", 1, 1, {-0.5f, 0.0f, 1.0f});
+    EXPECT_EQ(load_texture(folder / "data.exr", TextureContent::data).sample({0.5f, 0.5f}).x, -0.5f);
 }
 
 TEST(Environment, StraightUpIsTheFirstRowAndMinusZTheMiddle) {
