@@ -70,7 +70,7 @@ void ViewOptions::add_quantities_to(CLI::App& command) {
         ->capture_default_str()
         ->group(group);
     command.add_option("--bounces", quantities.bounces, "Diffuse bounces")
-        ->check(CLI::Range(1, 64))
+        ->check(CLI::Range(1, most_diffuse_bounces))
         ->capture_default_str()
         ->group(group);
     command

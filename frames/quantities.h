@@ -34,6 +34,9 @@ inline float evaluate_falloff(Falloff falloff, float distance, float radius) {
 std::string_view to_string(Falloff falloff);
 Falloff falloff_from_string(std::string_view name);  // throws ImageError that lists the names
 
+// After so many bounces a furnace whose walls reflect 0.99 has lost all but 1e-9 of its light.
+constexpr int most_diffuse_bounces = 2048;
+
 struct Quantities {
     // Planes wanted, by name: "ao", "direct", "indirect", "indirect.1".., "irradiance", "emission", "total", and the
     // G-buffer's "depth", "normal", "albedo", "motion", "layer2.depth"... A renderer computes these and nothing else.

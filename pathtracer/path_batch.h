@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <vector>
 
 #include <glm/glm.hpp>
 
@@ -11,8 +12,6 @@
 #include "pathtracer/sample_sequence.h"
 
 namespace plumb {
-
-constexpr int most_bounces = 64;
 
 // A vertex of a path whose surface is not plainly Lambertian.
 struct SpecularVertex {
@@ -84,8 +83,8 @@ struct VertexBatch : SurfaceLanes {
 // What each path of a batch found, by path.
 struct BatchEstimate {
     Lanes<float> ambient_visibility;
-    // By vertex; as if x's albedo were 1, but over pi.
-    std::array<VectorLanes, most_bounces + 1> radiance;
+    // By vertex, as many as the plan has; as if x's albedo were 1, but over pi.
+    std::vector<VectorLanes> radiance;
     VectorLanes reflection;
     int rays = 0;
 };

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 
+#include "frames/quantities.h"
+
 namespace plumb {
 
 // What chooses the primary ray.
@@ -19,5 +21,9 @@ constexpr std::uint32_t path_dimension(int vertex, bool from_specular_start, Ver
     return primary_dimensions + uses_per_vertex * static_cast<std::uint32_t>(vertex) + static_cast<std::uint32_t>(use) +
            (from_specular_start ? specular_paths : 0u) + pane * panes_apart;
 }
+
+static_assert(path_dimension(most_diffuse_bounces + 1, false, VertexUse::pane_pick) <
+                  path_dimension(0, true, VertexUse::extended_light),
+              "paths that start with the specular lobe would share the numbers of the others");
 
 }  // namespace plumb

@@ -328,7 +328,8 @@ void PathIntegrator::follow(const VertexBatch& starts, Start start, PathWorkspac
 
 void PathIntegrator::estimate(const VertexBatch& starts, PathWorkspace& workspace, BatchEstimate& estimate) const {
     estimate.ambient_visibility.fill(0, starts.count, 1.0f);
-    for (int k = 0; k <= plan_.bounces; ++k) estimate.radiance[k].fill(0, starts.count, glm::vec3(0.0f));
+    estimate.radiance.resize(static_cast<std::size_t>(plan_.bounces) + 1);  // once for the estimate of a thread
+    for (VectorLanes& radiance : estimate.radiance) radiance.fill(0, starts.count, glm::vec3(0.0f));
     estimate.reflection.fill(0, starts.count, glm::vec3(0.0f));
     estimate.rays = 0;
 

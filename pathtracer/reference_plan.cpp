@@ -68,9 +68,9 @@ void check(const View& view, const ReferenceSettings& settings) {
         if (radius > 0.0f) continue;
         throw ReferenceError(fmt::format("{} radius {} m must be positive; infinity means no limit", name, radius));
     }
-    if (quantities.bounces < 0 || quantities.bounces > most_bounces) {
+    if (quantities.bounces < 0 || quantities.bounces > most_diffuse_bounces) {
         throw ReferenceError(
-            fmt::format("{} bounces: the number must lie between 0 and {}", quantities.bounces, most_bounces));
+            fmt::format("{} bounces: the number must lie between 0 and {}", quantities.bounces, most_diffuse_bounces));
     }
     if (settings.roulette_after < 0) {
         throw ReferenceError(fmt::format("roulette after {} bounces: the number must not be negative; 0 means never",
@@ -80,8 +80,7 @@ void check(const View& view, const ReferenceSettings& settings) {
                             !(settings.oracle->minimum_separation >= 0.0f))) {
         throw ReferenceError(
             fmt::format("an oracle of {} layers that lie {} m apart: there may be 1 to 99, or 0 for all in view, and "
-                        "the separation "
-                        "must not be negative",
+                        "the separation must not be negative",
                         settings.oracle->layers, settings.oracle->minimum_separation));
     }
     const std::optional<View>& opening = settings.view_at_shutter_opening;

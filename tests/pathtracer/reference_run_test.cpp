@@ -215,7 +215,7 @@ TEST(Reference, RefusesSenselessSettings) {
     refuses([](auto& s) { s.quantities.indirect_radius = std::nanf(""); }, "indirect radius");
     refuses([](auto& s) { s.quantities.reflection_radius = 0.0f; }, "reflection radius");
     refuses([](auto& s) { s.quantities.bounces = -1; }, "bounces");
-    refuses([](auto& s) { s.quantities.bounces = 1000; }, "bounces");
+    refuses([](auto& s) { s.quantities.bounces = 100000; }, "bounces");
     refuses([](auto& s) { s.quantities.planes = {"colour"}; }, "no plane 'colour'");
     refuses([](auto& s) { s.quantities.planes = {"indirect.0"}; }, "no plane 'indirect.0'");
     refuses([](auto& s) { s.quantities.planes = {"layer1.depth"}; }, "no plane 'layer1.depth'");
