@@ -1,5 +1,6 @@
 #include "pathtracer/checkpoint.h"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdio>
@@ -21,7 +22,7 @@ namespace plumb {
 namespace {
 
 constexpr std::array<char, 8> magic = {'P', 'L', 'U', 'M', 'B', 'R', 'E', 'F'};
-constexpr std::uint32_t format_version = 5;  // also of the samples that the sums are made of
+constexpr std::uint32_t format_version = 6;  // also of the samples that the sums are made of
 
 // As it lies in the file; the sums follow, then the checksum of all before it. Little-endian, as all machines we build
 // on.
@@ -30,12 +31,12 @@ struct Header {
     std::uint32_t version;
     std::int32_t begin, end;
     std::uint32_t unused;
-    std::uint64_t scene, view, settings;
+    std::uint64_t scene, view, settings, embree;
     std::uint64_t rays;
     double seconds;
     std::uint64_t sum_count;
 };
-static_assert(std::is_trivially_copyable_v<Header> && sizeof(Header) == 72, "no padding may reach the file");
+static_assert(std::is_trivially_copyable_v<Header> && sizeof(Header) == 80, "no padding may reach the file");
 
 std::uint64_t checksum(const Header& header, std::span<const double> sums) {
     const std::uint64_t of_header = XXH3_64bits(&header, sizeof header);
@@ -47,14 +48,14 @@ std::uint64_t hash(const std::string& bytes) { return XXH3_64bits(bytes.data(), 
 }  // namespace
 
 CheckpointKey CheckpointKey::of(const Scene& scene, const TimeSpan& span, const View& view,
-                                const ReferenceSettings& settings) {
-    return {scene.content_hash(), hash(view_identity(view)), hash(sampling_identity(settings, span))};
+                                const ReferenceSettings& settings, std::uint64_t embree) {
+    return {scene.content_hash(), hash(view_identity(view)), hash(sampling_identity(settings, span)), embree};
 }
 
 void write_checkpoint(const std::filesystem::path& path, const CheckpointKey& key, const CheckpointState& state,
                       std::span<const double> sums) {
-    const Header header{magic,    format_version, state.begin, state.end,     0,          key.scene,
-                        key.view, key.settings,   state.rays,  state.seconds, sums.size()};
+    const Header header{magic,        format_version, state.begin, state.end,     0,          key.scene, key.view,
+                        key.settings, key.embree,     state.rays,  state.seconds, sums.size()};
     const std::uint64_t sum_of_all = checksum(header, sums);
     write_atomically(path, [&](const std::filesystem::path& temporary) {
         const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(temporary.c_str(), "wb"), &std::fclose);
@@ -70,7 +71,7 @@ void write_checkpoint(const std::filesystem::path& path, const CheckpointKey& ke
     });
 }
 
-CheckpointState read_checkpoint(const std::filesystem::path& path, const CheckpointKey& key, std::span<double> sums) {
+CheckpointState add_checkpoint(const std::filesystem::path& path, const CheckpointKey& key, std::span<double> sums) {
     const auto refuse = [&path](std::string_view reason) {
         return ReferenceError(
             fmt::format("checkpoint or shard '{}' {}; remove it or name another", path.string(), reason));
@@ -89,14 +90,28 @@ CheckpointState read_checkpoint(const std::filesystem::path& path, const Checkpo
     if (header.settings != key.settings || header.sum_count != sums.size()) {
         throw refuse("belongs to other settings: planes, radii, bounces, seed or sampling differ");
     }
-    std::uint64_t sum_of_all = 0;
-    if (!file.read(reinterpret_cast<char*>(sums.data()), static_cast<std::streamsize>(sums.size_bytes())) ||
-        !file.read(reinterpret_cast<char*>(&sum_of_all), sizeof sum_of_all)) {
-        throw refuse("is cut off");
+    if (header.embree != key.embree) {
+        throw refuse(
+            "comes from a machine on which Embree finds hits with other last bits (another version of it, or another "
+            "kind of processor), so that its samples are not those of one run; render all parts on machines of a kind");
     }
+    // Piece by piece, so that the sums of an image are not in memory twice.
+    const std::unique_ptr<XXH3_state_t, decltype(&XXH3_freeState)> hash_of_all(XXH3_createState(), &XXH3_freeState);
+    XXH3_64bits_reset_withSeed(hash_of_all.get(), XXH3_64bits(&header, sizeof header));
+    std::vector<double> piece(std::min<std::size_t>(sums.size(), 1u << 16));
+    for (std::size_t first = 0; first < sums.size(); first += piece.size()) {
+        const std::size_t count = std::min(piece.size(), sums.size() - first);
+        if (!file.read(reinterpret_cast<char*>(piece.data()), static_cast<std::streamsize>(count * sizeof(double)))) {
+            throw refuse("is cut off");
+        }
+        XXH3_64bits_update(hash_of_all.get(), piece.data(), count * sizeof(double));
+        for (std::size_t i = 0; i < count; ++i) sums[first + i] += piece[i];
+    }
+    std::uint64_t sum_of_all = 0;
+    if (!file.read(reinterpret_cast<char*>(&sum_of_all), sizeof sum_of_all)) throw refuse("is cut off");
     const bool sensible =
         header.begin >= 0 && header.begin % 2 == 0 && header.end >= header.begin && header.end % 2 == 0;
-    if (sum_of_all != checksum(header, sums) || !sensible) throw refuse("is damaged");
+    if (sum_of_all != XXH3_64bits_digest(hash_of_all.get()) || !sensible) throw refuse("is damaged");
     return {header.begin, header.end, header.rays, header.seconds};
 }
 

@@ -9,14 +9,14 @@
 
 namespace plumb {
 
-// Tells runs apart: sums may only be continued with the same scene, view and settings. The number of samples and the
-// target error may differ.
+// Tells runs apart: sums may only be continued with the same scene, view and settings, where Embree computes the same
+// bits. The number of samples and the target error may differ.
 struct CheckpointKey {
-    std::uint64_t scene = 0, view = 0, settings = 0;
+    std::uint64_t scene = 0, view = 0, settings = 0, embree = 0;
 
-    // `span` is the path tracer's.
+    // `span` is the path tracer's, `embree` the fingerprint of its Embree.
     static CheckpointKey of(const Scene& scene, const TimeSpan& span, const View& view,
-                            const ReferenceSettings& settings);
+                            const ReferenceSettings& settings, std::uint64_t embree);
 };
 
 // Samples begin to end - 1 of every pixel are in the sums.
@@ -30,8 +30,8 @@ struct CheckpointState {
 void write_checkpoint(const std::filesystem::path& path, const CheckpointKey& key, const CheckpointState& state,
                       std::span<const double> sums);
 
-// Fills `sums`. Throws ReferenceError for a file that is not a checkpoint, is truncated or damaged, or belongs to
-// another scene, view or settings.
-CheckpointState read_checkpoint(const std::filesystem::path& path, const CheckpointKey& key, std::span<double> sums);
+// Adds the file's sums to `sums`. Throws ReferenceError for a file that is not a checkpoint, is truncated or damaged,
+// or belongs to another scene, view, settings or Embree; `sums` may then be of no use.
+CheckpointState add_checkpoint(const std::filesystem::path& path, const CheckpointKey& key, std::span<double> sums);
 
 }  // namespace plumb

@@ -54,9 +54,9 @@ struct ReferenceSettings {
     double target_error = 0.0;  // stop early once the relative standard error of every stochastic plane (RMS standard
                                 // error over the RMS of the plane) is below it; 0: never
     std::uint64_t seed = 1;
-    float minimum_separation = 0.1f;  // metres along the view axis between the first and the second layer (layer2.*)
-    bool antialias =
-        false;  // primary rays spread over the pixel instead of through its centre; the G-buffer's never do
+    float minimum_separation = 0.1f;    // metres along the view axis between the first and the second layer (layer2.*)
+    bool antialias = false;             // primary rays spread over the pixel instead of through its centre, but for the
+                                        // G-buffer's, which never do
     std::optional<View> previous_view;  // where the camera was in the frame before (motion); none: it stood still
     EmitterSampling emitter_sampling = EmitterSampling::both;
     SamplePoints points = SamplePoints::sobol;
@@ -81,17 +81,17 @@ struct ReferenceControl {
     int threads = 0;                                                 // 0: all
     std::function<void(const ReferenceProgress&)> on_progress = {};  // about once a second, from the calling thread
     const std::atomic<bool>* stop = nullptr;  // set from a signal handler; the run ends after the current pass
-    // Written every minute and on stop; resumed from where it exists, also with more samples or another target error.
-    // The caller removes it once the frame is in safety.
+    // Written every so many seconds and on stop; resumed from where it exists, also with more samples or another target
+    // error. The caller removes it once the frame is in safety.
     std::filesystem::path checkpoint = {};
+    double checkpoint_seconds = 60.0;  // 0: after every pass
 };
 
 struct ReferenceResult {
     // The wanted planes. For every stochastic one also
     //   half_a.*, half_b.*  the means of the even and of the odd samples: independent, and `plane` is their average;
-    //   variance.*          of the mean, per channel: ((half_a - half_b) / 2)^2. Unbiased also for low-discrepancy
-    //   samples,
-    //                       but with one degree of freedom per pixel: average it over pixels before use.
+    //   variance.*          of the mean, per channel: ((half_a - half_b) / 2)^2. Unbiased also where samples have low
+    //                       discrepancy, but with one degree of freedom per pixel: average it over pixels before use.
     Frame frame;
     int samples = 0;         // per pixel
     double seconds = 0.0;    // over all runs that led here
@@ -105,8 +105,8 @@ struct ReferenceResult {
 // What a pixel's ray meets, found exactly.
 struct LayerSettings {
     int layers = 2;
-    float minimum_separation =
-        0.1f;  // metres along the view axis: layer k + 1 is the nearest hit deeper than layer k by more
+    // Metres along the view axis: layer k + 1 is the nearest hit that is deeper than layer k by more.
+    float minimum_separation = 0.1f;
     const View* previous_view = nullptr;  // for motion; none: the camera stood still
 };
 

@@ -70,8 +70,7 @@ ReferenceRun::ReferenceRun(const TracedScene& scene, const EnvironmentDistributi
                     light_level(scene.scene())),
       hits_(plan_.primary_rays_are_sampled && plan_.gbuffer.empty() ? std::vector<SurfaceHit>{}
                                                                     : first_layer(scene, view)),
-      sampler_(scene, view, settings, plan_.primary_rays_are_sampled, hits_, integrator_, accumulation_),
-      key_(CheckpointKey::of(scene.scene(), scene.span(), view, settings)) {
+      sampler_(scene, view, settings, plan_.primary_rays_are_sampled, hits_, integrator_, accumulation_) {
     state_.begin = state_.end = settings.first_sample;
     find_exact_parts();
     state_.seconds = seconds_since(begun_);
@@ -121,21 +120,24 @@ double ReferenceRun::worst_error() const {
     return worst;
 }
 
+CheckpointKey ReferenceRun::key() const {
+    return CheckpointKey::of(scene_.scene(), scene_.span(), view_, settings_, scene_.embree_fingerprint());
+}
+
 void ReferenceRun::resume(const ReferenceControl& control) {
     if (control.checkpoint.empty() || !std::filesystem::exists(control.checkpoint)) return;
-    const CheckpointState found = read_checkpoint(control.checkpoint, key_, accumulation_.values());
+    const CheckpointState found = add_checkpoint(control.checkpoint, key(), accumulation_.values());
     if (found.begin != settings_.first_sample || found.end > settings_.samples) {
         throw ReferenceError(fmt::format(
             "checkpoint '{}' holds samples {} to {} per pixel, which do not begin those asked for, {} to {}; ask for "
-            "at "
-            "least as many from the same one on, or remove it",
+            "at least as many from the same one on, or remove it",
             control.checkpoint.string(), found.begin, found.end, settings_.first_sample, settings_.samples));
     }
     state_ = found;
 }
 
 bool ReferenceRun::sample(const ReferenceControl& control) {
-    constexpr double pass_seconds = 1.0, checkpoint_seconds = 60.0;
+    constexpr double pass_seconds = 1.0;
     // The first pass, before the pace is known, is what few machines take much longer for; not all of a small image's
     // samples, so that there is something to tell of.
     constexpr double first_pass_rays = 2e6, first_pass_samples = 16.0;
@@ -172,8 +174,8 @@ bool ReferenceRun::sample(const ReferenceControl& control) {
                                  static_cast<double>(state_.rays) / std::max(state_.seconds, 1e-9), state_.seconds});
         }
         stopped = control.stop && control.stop->load() && state_.end < settings_.samples;
-        if (!control.checkpoint.empty() && (stopped || seconds_since(last_checkpoint) > checkpoint_seconds)) {
-            write_checkpoint(control.checkpoint, key_, state_, accumulation_.values());
+        if (!control.checkpoint.empty() && (stopped || seconds_since(last_checkpoint) >= control.checkpoint_seconds)) {
+            write_checkpoint(control.checkpoint, key(), state_, accumulation_.values());
             last_checkpoint = Clock::now();
         }
     }
@@ -185,7 +187,7 @@ ReferenceResult ReferenceRun::run(const ReferenceControl& control) { return fini
 
 bool ReferenceRun::run_shard(const std::filesystem::path& file, const ReferenceControl& control) {
     if (!sample(control)) return false;
-    write_checkpoint(file, key_, state_, accumulation_.values());
+    write_checkpoint(file, key(), state_, accumulation_.values());
     return true;
 }
 
@@ -196,12 +198,10 @@ ReferenceResult ReferenceRun::merge(const std::vector<std::filesystem::path>& sh
         CheckpointState state;
     };
     std::vector<Shard> read;
-    std::vector<double> sums(accumulation_.values().size());
     std::uint64_t rays = 0;
     double seconds = 0.0;
     for (const std::filesystem::path& file : shards) {
-        read.push_back({file, read_checkpoint(file, key_, sums)});
-        accumulation_.add(sums);
+        read.push_back({file, add_checkpoint(file, key(), accumulation_.values())});
         rays += read.back().state.rays, seconds += read.back().state.seconds;
     }
     std::ranges::sort(read, {}, [](const Shard& shard) { return shard.state.begin; });
@@ -210,8 +210,7 @@ ReferenceResult ReferenceRun::merge(const std::vector<std::filesystem::path>& sh
         if (read[i].state.begin != expected) {
             throw ReferenceError(
                 fmt::format("shard '{}' begins with sample {}, but {} is the next after {}; shards must follow each "
-                            "other from 0 on, "
-                            "without gap or overlap",
+                            "other from 0 on, without gap or overlap",
                             read[i].file.string(), read[i].state.begin, expected,
                             i == 0 ? std::string("nothing") : fmt::format("'{}'", read[i - 1].file.string())));
         }

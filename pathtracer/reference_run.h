@@ -35,6 +35,7 @@ private:
     bool has_noise() const;
     bool sample(const ReferenceControl& control);  // false: stopped
     void resume(const ReferenceControl& control);
+    CheckpointKey key() const;
     double worst_error() const;
     ReferenceResult finish(bool complete);  // the sums are gone afterwards
     int samples_done() const { return state_.end - state_.begin; }
@@ -54,7 +55,6 @@ private:
     std::vector<SurfaceHit> hits_;  // of the rays through the pixels' centres, where anything asks for them
     TileSampler sampler_;
     ExactParts exact_;
-    CheckpointKey key_;
     CheckpointState state_;
 };
 

@@ -92,6 +92,10 @@ void copy_rays(const RayBatch& rays, int first, Packet& packet, std::array<int, 
     copy(packet.dir_x, rays.direction.x), copy(packet.dir_y, rays.direction.y), copy(packet.dir_z, rays.direction.z);
     copy(packet.tnear, rays.nearest), copy(packet.tfar, rays.farthest), copy(packet.time, rays.time);
     for (int i = 0; i < width; ++i) valid[i] = first + i < rays.count ? -1 : 0;
+    // Where a processor has no packets as wide, Embree goes by the rays' intervals in the place of `valid`.
+    for (int i = std::max(0, rays.count - first); i < width; ++i) {
+        packet.tnear[i] = infinite_distance, packet.tfar[i] = -infinite_distance;
+    }
 }
 
 // Starts to fetch the texels that Texture::sample will read at `uv`. Coordinates beyond the texture are taken as

@@ -10,6 +10,7 @@
 #include <glm/glm.hpp>
 
 #include "pathtracer/embree_api.h"
+#include "pathtracer/embree_fingerprint.h"
 #include "pathtracer/ray_batch.h"
 #include "pathtracer/surface_hit.h"
 #include "pathtracer/time_span.h"
@@ -25,7 +26,8 @@ struct CornerLanes;
 class TracedScene {
 public:
     // Instances that move are built with their motion over `span`; times of rays run from 0 (its begin) to 1 (its end).
-    explicit TracedScene(const Scene& scene, const TimeSpan& span = {});
+    // `embree_settings`: as rtcNewDevice takes them; null: whatever the machine does best.
+    explicit TracedScene(const Scene& scene, const TimeSpan& span = {}, const char* embree_settings = nullptr);
     ~TracedScene();
     TracedScene(const TracedScene&) = delete;
     TracedScene& operator=(const TracedScene&) = delete;
@@ -71,6 +73,7 @@ public:
     SurfaceSample surface_sample(std::uint32_t instance, const glm::vec2& uv) const;
 
     RTCScene embree_scene() const { return embree_scene_; }
+    std::uint64_t embree_fingerprint() const { return plumb::embree_fingerprint(device_); }
     // Every ray of a batch is told to `recorder` (null: none), for benchmarks.
     void set_recorder(RayRecorder* recorder) { recorder_ = recorder; }
 

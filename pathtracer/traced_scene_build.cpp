@@ -68,10 +68,10 @@ bool may_bulge(const std::array<glm::vec3, 3>& corners, const std::array<glm::ve
 
 }  // namespace
 
-TracedScene::TracedScene(const Scene& scene, const TimeSpan& span)
+TracedScene::TracedScene(const Scene& scene, const TimeSpan& span, const char* embree_settings)
     : scene_(scene), span_(span), parts_(scene.instances.size()) {
     check_indices(scene);
-    device_ = rtcNewDevice(nullptr);
+    device_ = rtcNewDevice(embree_settings);
     if (!device_) {
         throw ReferenceError(fmt::format("Embree does not start (error {}); `plumbline doctor` tells what it needs",
                                          static_cast<int>(rtcGetDeviceError(nullptr))));

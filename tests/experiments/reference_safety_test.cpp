@@ -1,14 +1,17 @@
 // `plumbline reference` does not lose work: signals, full disks, unwritable folders, vanished files.
+#include <algorithm>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <sstream>
 #include <string>
+#include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "frames/exr.h"
 #include "tests/experiments/program.h"
 #include "tests/file_size_limit.h"
 #include "tests/temporary_folder.h"
@@ -57,6 +60,56 @@ protected:
 
     TemporaryFolder folder_;
 };
+
+TEST_F(ReferenceSafety, ARunThatWasInterruptedEndsWithTheBitsOfOneThatWasNot) {
+    // More samples than the first pass has, after which the signal is looked at.
+    const std::string samples = "256";
+    const std::vector<std::string> planes = {"--planes", "ao,direct,indirect,indirect.2,total,depth", "--bounces", "2"};
+    std::vector<std::string> arguments = command(samples);
+    arguments.insert(arguments.end(), planes.begin(), planes.end());
+    arguments.erase(arguments.begin() + 5, arguments.begin() + 7);  // --planes ao
+    ASSERT_EQ(run_plumbline(arguments).exit_code, 0);
+    const Frame whole = read_exr(frame_file());
+    std::filesystem::remove(frame_file());
+
+    const ProgramRun stopped = signal_plumbline(arguments, SIGTERM);
+    ASSERT_EQ(stopped.exit_code, 130) << stopped.output;
+    EXPECT_FALSE(std::filesystem::exists(frame_file()));
+    const std::filesystem::path partial = checkpoint();
+    const ProgramRun resumed = run_plumbline(arguments);
+    ASSERT_EQ(resumed.exit_code, 0) << resumed.output;
+    EXPECT_THAT(resumed.output, HasSubstr("256 samples per pixel"));
+    EXPECT_FALSE(std::filesystem::exists(partial)) << "the checkpoint of a run that has ended";
+
+    const Frame frame = read_exr(frame_file());
+    ASSERT_EQ(frame.plane_names(), whole.plane_names());
+    for (const std::string& plane : whole.plane_names()) {
+        const auto a = std::as_bytes(whole.plane(plane).values()), b = std::as_bytes(frame.plane(plane).values());
+        EXPECT_TRUE(std::ranges::equal(a, b)) << plane;
+    }
+    EXPECT_EQ(frame.facts.at("rays"), whole.facts.at("rays"));
+}
+
+TEST_F(ReferenceSafety, ADamagedCheckpointIsRefusedAndStays) {
+    const std::string samples = "256";
+    ASSERT_EQ(signal_plumbline(command(samples), SIGTERM).exit_code, 130);
+    const std::filesystem::path partial = checkpoint();
+    const std::string good = bytes_of(partial);
+    std::string damaged = good;
+    damaged[good.size() / 2] ^= 0x10;
+    const std::string cut = good.substr(0, good.size() - 9), foreign = "no checkpoint at all";
+    for (const auto& [bytes, reason] : {std::pair{damaged, "is damaged"}, std::pair{cut, "is cut off"},
+                                        std::pair{foreign, "is not a checkpoint of a reference"}}) {
+        std::ofstream(partial, std::ios::binary) << bytes;
+        const auto before = files();
+        const ProgramRun refused = run_plumbline(command(samples));
+        EXPECT_EQ(refused.exit_code, 2) << refused.output;
+        EXPECT_THAT(refused.output, AllOf(HasSubstr(partial.string()), HasSubstr(reason), HasSubstr("remove it")));
+        EXPECT_TRUE(files() == before) << "files changed, vanished or were left behind";
+    }
+    std::filesystem::remove(partial);
+    EXPECT_EQ(run_plumbline(command(samples)).exit_code, 0);
+}
 
 class Signals : public ReferenceSafety, public testing::WithParamInterface<int> {};
 

@@ -1,6 +1,9 @@
 // Runs as wholes: the same bits however the work is split, honest error bars, interruption, and refusals.
+#include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -11,6 +14,7 @@
 #include "scenes/builtin.h"
 #include "scenes/scene_error.h"
 #include "tests/pathtracer/test_scenes.h"
+#include "tests/temporary_folder.h"
 
 namespace plumb {
 namespace {
@@ -195,6 +199,65 @@ TEST_F(Checkpoints, OfAnotherRunOrDamagedAreRefused) {
     EXPECT_THAT(resume(scene, view, settings), ThrowsMessage<ReferenceError>(HasSubstr("is cut off")));
     std::filesystem::resize_file(path(), 10);
     EXPECT_THAT(resume(scene, view, settings), ThrowsMessage<ReferenceError>(HasSubstr("cut off")));
+}
+
+TEST_F(Checkpoints, AppearAfterTheirTimeWhileTheRunGoesOn) {
+    const Scene scene = make_cornell();
+    const View view = cornell_view(scene);
+    // In passes of at most 16 samples and about a second: when the second is told of, the first has left its checkpoint
+    // or, with a minute to go, has not.
+    for (const double period : {0.0, 60.0}) {
+        std::atomic<bool> stop{false};
+        ReferenceControl control;
+        control.checkpoint = path();
+        control.checkpoint_seconds = period;
+        control.stop = &stop;
+        int passes = 0;
+        bool found = false;
+        control.on_progress = [&](const ReferenceProgress&) {
+            if (++passes < 2) return;
+            found = std::filesystem::exists(path());
+            stop = true;
+        };
+        EXPECT_FALSE(PathTracer(scene).render(view, settings_for({"ao"}, 1 << 20), control).complete);
+        EXPECT_EQ(found, period == 0.0) << "every " << period << " s";
+        std::filesystem::remove(path());
+    }
+}
+
+// What a power cut does: the process is gone in the middle of a pass. googletest runs the test once more, in the
+// process that is to die, so the file's name is handed on in the environment.
+TEST(KilledRunDeathTest, IsResumedFromItsLastCheckpointToTheBitsOfAnUninterruptedRun) {
+    GTEST_FLAG_SET(death_test_style, "threadsafe");
+    constexpr const char* variable = "PLUMBLINE_TEST_KILLED_RUN";
+    std::optional<TemporaryFolder> folder;
+    if (!std::getenv(variable)) ::setenv(variable, (folder.emplace() / "run.checkpoint").c_str(), 1);
+    const Scene scene = make_cornell();
+    const View view = cornell_view(scene);
+    auto settings = settings_for(all_planes, 1 << 20, 2);
+    ReferenceControl control;
+    control.checkpoint = std::getenv(variable);
+    control.checkpoint_seconds = 0.0;
+    const auto die_in_the_second_pass = [&] {
+        control.on_progress = [](const ReferenceProgress& progress) {
+            if (progress.samples_done > 16) std::raise(SIGKILL);
+        };
+        PathTracer(scene).render(view, settings, control);
+    };
+    EXPECT_EXIT(die_in_the_second_pass(), testing::KilledBySignal(SIGKILL), "");
+    ::unsetenv(variable);
+
+    ASSERT_TRUE(std::filesystem::exists(control.checkpoint));
+    settings.samples = 48;
+    int first_told = 0;
+    control.on_progress = [&](const ReferenceProgress& progress) {
+        if (first_told == 0) first_told = progress.samples_done;
+    };
+    const ReferenceResult resumed = PathTracer(scene).render(view, settings, control);
+    EXPECT_GT(first_told, 16) << "the first pass is not done again";
+    const ReferenceResult whole = PathTracer(scene).render(view, settings);
+    EXPECT_EQ(resumed.rays, whole.rays);
+    expect_same_bits(resumed.frame, whole.frame);
 }
 
 TEST(Reference, RefusesSenselessSettings) {
