@@ -59,12 +59,14 @@ TEST(FurnaceByDirections, IndirectLightCountsByDistanceAsOccludersDo) {
     const PathTracer tracer(scene);
     for (const Falloff falloff : {Falloff::hard, Falloff::quadratic, Falloff::cubic}) {
         for (const float radius : {0.7f, 1.5f, 10.0f}) {
-            auto settings = settings_for({"ao", "indirect.1"}, 16);
+            auto settings = settings_for({"ao", "indirect.1", "indirect.2", "irradiance"}, 16, 2);
             settings.emitter_sampling = EmitterSampling::directions;
             settings.quantities.ao_radius = settings.quantities.indirect_radius = radius;
             settings.quantities.ao_falloff = settings.quantities.indirect_falloff = falloff;
             const Frame frame = tracer.render(view_of({0, 0, 0}, {0.4f, -1, 0.3f}, 1.5f), settings).frame;
             for (int x = 0; x < frame.width(); ++x) {
+                const std::string what = fmt::format("{} within {}", to_string(falloff), radius);
+                const double near = 1.0 - frame.plane("ao").at(x, 7);
                 // 1e-6: a few roundings of float32 products.
                 EXPECT_NEAR(frame.plane("indirect.1").at(x, 7, 1), std::pow(albedo, 2) * near, 1e-6) << what;
                 EXPECT_NEAR(frame.plane("indirect.2").at(x, 7, 1), std::pow(albedo, 3) * near, 1e-6) << what;
@@ -119,7 +121,8 @@ TEST_P(FurnaceLimit, IsEmissionOverOneMinusAlbedo) {
         const bool reaches_limit = bounces == bounces_to_the_limit(albedo);
         for (const bool antialias : {false, true}) {
             const std::string what = fmt::format("{} bounces{}", bounces, antialias ? ", antialiased" : "");
-            auto settings = settings_for({"total"}, 128, bounces);
+            // Each vertex of a path without roulette is a sample of its own: long paths need to be few.
+            auto settings = settings_for({"total"}, roulette_after == 0 && bounces > 100 ? 16 : 128, bounces);
             settings.emitter_sampling = sampling;
             settings.roulette_after = roulette_after;
             settings.antialias = antialias;
