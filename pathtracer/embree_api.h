@@ -1,6 +1,8 @@
 // The one place that knows which Embree there is: versions 3 and 4 differ in how a query takes its options.
 #pragma once
 
+#include <span>
+
 #if __has_include(<embree4/rtcore.h>)
 #include <embree4/rtcore.h>
 #else
@@ -55,18 +57,41 @@ public:
 
 #if RTC_VERSION_MAJOR >= 4
     void intersect(RTCScene scene, RTCRayHit& ray) { rtcIntersect1(scene, &ray, &intersect_); }
+    void intersect(RTCScene scene, const int* valid, RTCRayHit4& rays) {
+        rtcIntersect4(valid, scene, &rays, &intersect_);
+    }
     void intersect(RTCScene scene, const int* valid, RTCRayHit8& rays) {
         rtcIntersect8(valid, scene, &rays, &intersect_);
     }
+    void intersect(RTCScene scene, const int* valid, RTCRayHit16& rays) {
+        rtcIntersect16(valid, scene, &rays, &intersect_);
+    }
     void occluded(RTCScene scene, RTCRay& ray) { rtcOccluded1(scene, &ray, &occluded_); }
+    void occluded(RTCScene scene, const int* valid, RTCRay4& rays) { rtcOccluded4(valid, scene, &rays, &occluded_); }
+    void occluded(RTCScene scene, const int* valid, RTCRay8& rays) { rtcOccluded8(valid, scene, &rays, &occluded_); }
     void occluded(RTCScene scene, const int* valid, RTCRay16& rays) { rtcOccluded16(valid, scene, &rays, &occluded_); }
 #else
     void intersect(RTCScene scene, RTCRayHit& ray) { rtcIntersect1(scene, &context_, &ray); }
+    void intersect(RTCScene scene, const int* valid, RTCRayHit4& rays) {
+        rtcIntersect4(valid, scene, &context_, &rays);
+    }
     void intersect(RTCScene scene, const int* valid, RTCRayHit8& rays) {
         rtcIntersect8(valid, scene, &context_, &rays);
     }
+    void intersect(RTCScene scene, const int* valid, RTCRayHit16& rays) {
+        rtcIntersect16(valid, scene, &context_, &rays);
+    }
     void occluded(RTCScene scene, RTCRay& ray) { rtcOccluded1(scene, &context_, &ray); }
+    void occluded(RTCScene scene, const int* valid, RTCRay4& rays) { rtcOccluded4(valid, scene, &context_, &rays); }
+    void occluded(RTCScene scene, const int* valid, RTCRay8& rays) { rtcOccluded8(valid, scene, &context_, &rays); }
     void occluded(RTCScene scene, const int* valid, RTCRay16& rays) { rtcOccluded16(valid, scene, &context_, &rays); }
+    // Streams, which version 4 has no more.
+    void intersect(RTCScene scene, std::span<RTCRayHit> rays) {
+        rtcIntersect1M(scene, &context_, rays.data(), static_cast<unsigned>(rays.size()), sizeof(RTCRayHit));
+    }
+    void occluded(RTCScene scene, std::span<RTCRay> rays) {
+        rtcOccluded1M(scene, &context_, rays.data(), static_cast<unsigned>(rays.size()), sizeof(RTCRay));
+    }
 #endif
 
 private:
