@@ -1,3 +1,4 @@
+// How bright a colour is to the eye.
 #pragma once
 
 #include <glm/glm.hpp>

@@ -1,3 +1,4 @@
+// The error of the path tracer.
 #pragma once
 
 #include <stdexcept>

@@ -1,3 +1,4 @@
+// The points that samples are made of, as settings name them.
 #pragma once
 
 namespace plumb {
