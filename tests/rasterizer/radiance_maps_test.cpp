@@ -1,18 +1,17 @@
 // Radiance maps of the environment and of probes against integrals over directions, and how shaders read them.
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <functional>
 
 #include <fmt/format.h>
 
 #include "gl_test.h"
 #include "light_run.h"
 #include "light_scenes.h"
-#include "rasterizer/cube_faces.h"
+#include "radiance_counterpart.h"
 #include "rasterizer/gl_error.h"
 #include "rasterizer/specular_albedo_texture.h"
 #include "ray_caster.h"
-#include "scenes/ggx.h"
 #include "scenes/specular_albedo.h"
 
 namespace plumb {
@@ -21,70 +20,12 @@ namespace {
 using RadianceMapsTest = GlTest;
 PLUMBLINE_BOTH_BACKENDS(RadianceMapsTest);
 
+using counterpart::direction_of, counterpart::irradiance, counterpart::prefiltered, counterpart::Radiance;
 constexpr double pi = glm::pi<double>();
-using Radiance = std::function<glm::dvec3(const glm::dvec3& direction)>;
 
-// The direction of a texel of a face as read back: its top row first.
-glm::dvec3 direction_of(int face, int x, int y, int size) {
-    const CubeFace& cube_face = cube_faces[static_cast<std::size_t>(face)];
-    const glm::dvec3 forward(cube_face.forward), up(cube_face.up);
-    const double s = 2.0 * (x + 0.5) / size - 1.0, t = 1.0 - 2.0 * (y + 0.5) / size;
-    return glm::normalize(forward + s * glm::cross(forward, up) + t * up);
-}
-
-// Sums weight(d) L(d) over the sphere, by equal steps of the cosine of the polar angle about `axis` and of the azimuth.
-glm::dvec3 integrate(const Radiance& radiance, const glm::dvec3& axis, const std::function<double(double)>& weight,
-                     bool normalised, int rows, int columns) {
-    const glm::dvec3 helper = std::abs(axis.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0);
-    const glm::dvec3 u = glm::normalize(glm::cross(helper, axis)), v = glm::cross(axis, u);
-    glm::dvec3 sum(0.0);
-    double total = 0.0;
-    for (int i = 0; i < rows; ++i) {
-        // Finer towards the axis, where lobes are: the cosine is 1 - 2 q^2, which q's steps cover with weight 4 q.
-        const double q = (i + 0.5) / rows, cosine = 1.0 - 2.0 * q * q;
-        const double share = weight(cosine) * 4.0 * q / rows * 2.0 * pi / columns;
-        if (share == 0.0) continue;
-        const double sine = std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
-        for (int j = 0; j < columns; ++j) {
-            const double azimuth = 2.0 * pi * (j + 0.5) / columns;
-            sum += share * radiance(sine * std::cos(azimuth) * u + sine * std::sin(azimuth) * v + cosine * axis);
-            total += share;
-        }
-    }
-    return normalised ? sum / total : sum;
-}
-
-glm::dvec3 irradiance(const Radiance& radiance, const glm::dvec3& normal, int rows = 200, int columns = 200) {
-    return integrate(
-        radiance, normal, [](double cosine) { return std::max(0.0, cosine); }, false, rows, columns);
-}
-
-// The lobe of the split sum: D(h) (r.d) with h half way between r and d.
-glm::dvec3 prefiltered(const Radiance& radiance, const glm::dvec3& r, double alpha, int rows = 600) {
-    const auto lobe = [alpha](double cosine) {
-        if (cosine <= 0.0) return 0.0;
-        const double square = 0.5 * (1.0 + cosine);  // of the cosine of half the angle
-        return ggx_distribution(std::sqrt(square), 1.0 - square, alpha) * cosine;
-    };
-    return integrate(radiance, r, lobe, true, rows, rows / 6);
-}
-
-// Bright upwards and to one side, with some structure a few tens of degrees wide.
 Scene make_sky_scene() {
     Scene scene = make_corner();
-    Texture sky;
-    sky.width = 256, sky.height = 128, sky.wrap_v = TextureWrap::clamp;
-    for (int y = 0; y < sky.height; ++y) {
-        for (int x = 0; x < sky.width; ++x) {
-            const double polar = pi * (y + 0.5) / sky.height, azimuth = 2.0 * pi * (x + 0.5) / sky.width;
-            const double value = 1.0 + 0.8 * std::cos(polar) + 0.5 * std::sin(polar) * std::sin(3.0 * azimuth);
-            const double glow = 3.0 * std::exp(-20.0 * (1.0 - std::sin(polar) * std::cos(azimuth - 1.0)));
-            for (const double channel : {value + glow, 0.5 * value, 0.3 + glow, 1.0})
-                sky.texels.push_back(half(static_cast<float>(channel)));
-        }
-    }
-    scene.textures.push_back(sky);
-    scene.environment = {{1.0f, 2.0f, 0.5f}, 0, 0.4f};
+    counterpart::give_sky(scene);
     return scene;
 }
 
@@ -135,6 +76,110 @@ TEST_P(RadianceMapsTest, TheEnvironmentIsIntegratedForDiffuseAndGlossySurfaces) 
         const glm::dvec3 expected(scene.environment_radiance(direction_of(4, x, y, 64)));
         EXPECT_LT(glm::length(vector_at(face, x, y) - expected), 0.01 * glm::length(expected));
     }
+}
+
+// With thousands of directions per texel what is left is the cubes' resolution.
+TEST_P(RadianceMapsTest, GlossyLevelsConvergeToTheLobesIntegral) {
+    const Scene scene = make_sky_scene();
+    const Radiance sky = [&](const glm::dvec3& d) { return glm::dvec3(scene.environment_radiance(d)); };
+    const auto error_with = [&](int samples) {
+        Method method = plain_method();
+        method.environment = {.size = 64, .samples = samples};
+        LightRun run = run_of(context(), scene, method, "environment");
+        run.run();
+        double error = 0.0, sum = 0.0;
+        for (int level = 1; level < prefiltered_levels; ++level) {
+            const double roughness = static_cast<double>(level) / (prefiltered_levels - 1);
+            for (const int face : {0, 3, 4}) {
+                const Image lobes = run.image("environment.prefiltered", 3, face, level);
+                const int size = lobes.width();
+                for (const auto& [x, y] :
+                     {std::pair{0, size / 2}, std::pair{size / 2, size / 3}, std::pair{size - 1, 0}}) {
+                    const glm::dvec3 expected =
+                        prefiltered(sky, direction_of(face, x, y, size), roughness * roughness, 400);
+                    error += glm::length(vector_at(lobes, x, y) - expected);
+                    sum += glm::length(expected);
+                }
+            }
+        }
+        return error / sum;
+    };
+    const double few = error_with(32), thousands = error_with(4096);
+    // Texels of 1.4 degrees average the sky, whose glow is 13 degrees wide: some 1e-3.
+    EXPECT_LT(thousands, 3e-3) << few;
+    EXPECT_LT(thousands, few / 4.0);
+}
+
+// A sky of all nine polynomials of order 2 and less, none of them along an axis of the others, seen by a ball: each
+// pixel against the convolution with the clamped cosine (Ramamoorthi, Hanrahan 2001), written out.
+TEST_P(RadianceMapsTest, HarmonicsGiveEachPixelTheIrradianceOfItsNormal) {
+    using Basis = std::array<double, 9>;
+    const auto basis = [](const glm::dvec3& d) {
+        const double first = std::sqrt(3.0 / (4.0 * pi)), mixed = std::sqrt(15.0 / (4.0 * pi));
+        return Basis{std::sqrt(1.0 / (4.0 * pi)),
+                     first * d.y,
+                     first * d.z,
+                     first * d.x,
+                     mixed * d.x * d.y,
+                     mixed * d.y * d.z,
+                     std::sqrt(5.0 / (16.0 * pi)) * (3.0 * d.z * d.z - 1.0),
+                     mixed * d.x * d.z,
+                     0.5 * mixed * (d.x * d.x - d.y * d.y)};
+    };
+    // What the clamped cosine leaves of each order: pi, 2 pi / 3, pi / 4.
+    const Basis kept{pi, 2 * pi / 3, 2 * pi / 3, 2 * pi / 3, pi / 4, pi / 4, pi / 4, pi / 4, pi / 4};
+    const Basis weights{4.0, 0.9, -0.7, 0.5, 0.6, -0.5, 0.4, 0.7, -0.6};  // no radiance is negative
+    const auto sum_of = [&](const Basis& factors, const glm::dvec3& d) {
+        const Basis values = basis(d);
+        double sum = 0.0;
+        for (std::size_t k = 0; k < 9; ++k) sum += factors[k] * weights[k] * values[k];
+        return sum;
+    };
+    Basis ones;
+    ones.fill(1.0);
+    Scene scene = make_corner();
+    const Mesh ball = make_ball(24, 0.9f, {0.2f, 0.9f, 0.1f});
+    scene.instances.push_back({"ball", static_cast<int>(scene.meshes.size()), glm::mat4(1.0f)});
+    scene.meshes.push_back(ball);
+    Texture sky;
+    sky.width = 512, sky.height = 256, sky.wrap_v = TextureWrap::clamp;
+    for (int y = 0; y < sky.height; ++y) {
+        for (int x = 0; x < sky.width; ++x) {
+            // As Scene::environment_radiance reads it: columns from -z over +x, rows from +y down.
+            const double longitude = 2.0 * pi * ((x + 0.5) / sky.width - 0.5), polar = pi * (y + 0.5) / sky.height;
+            const glm::dvec3 d(std::sin(polar) * std::sin(longitude), std::cos(polar),
+                               -std::sin(polar) * std::cos(longitude));
+            const auto value = static_cast<float>(sum_of(ones, d));
+            ASSERT_GT(value, 0.0f);
+            for (const float channel : {value, 2.0f * value, 0.5f * value, 1.0f}) sky.texels.push_back(half(channel));
+        }
+    }
+    scene.environment = {glm::vec3(1.0f), static_cast<int>(scene.textures.size()), 0.0f};
+    scene.textures.push_back(sky);
+    const View view = corner_view();
+    Method method = plain_method();
+    method.gbuffer.radiance_format = RadianceFormat::rgba32f;
+    const Frame frame = render(context(), scene, view, {"direct", "albedo", "normal", "depth"}, method);
+    int compared = 0, wrong = 0;
+    std::array<int, 9> tells{};  // pixels in which a missing polynomial would show
+    for (int y = 0; y < view.height(); ++y) {
+        for (int x = 0; x < view.width(); ++x) {
+            if (std::isinf(frame.plane("depth").at(x, y))) continue;
+            ++compared;
+            const glm::dvec3 n = vector_at(frame.plane("normal"), x, y);
+            const double expected = sum_of(kept, n);
+            const glm::dvec3 found = vector_at(frame.plane("direct"), x, y),
+                             reflected = vector_at(frame.plane("albedo"), x, y) / pi * glm::dvec3(1.0, 2.0, 0.5);
+            // Half floats of the sky and its bilinear texels of 0.7 degrees: 1e-3 of the brightest.
+            constexpr double tolerance = 2e-3;
+            wrong += glm::length(found - reflected * expected) > tolerance * glm::length(reflected) * kept[0] * 2.0;
+            for (std::size_t k = 0; k < 9; ++k)
+                tells[k] += std::abs(kept[k] * weights[k] * basis(n)[k]) > 10.0 * tolerance * kept[0] * 2.0;
+        }
+    }
+    EXPECT_GT(compared, 4000);
+    EXPECT_EQ(wrong, 0);
+    for (std::size_t k = 0; k < 9; ++k) EXPECT_GT(tells[k], 200) << "polynomial " << k;
 }
 
 TEST_P(RadianceMapsTest, AConstantEnvironmentStaysExactlyWhatItIs) {
