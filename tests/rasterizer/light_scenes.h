@@ -57,6 +57,15 @@ inline Method plain_method() {
     return method;
 }
 
+// Lights without shadows.
+inline Method lamp_method(LocalLights local_lights, float threshold = 1.0f / 256.0f) {
+    Method method = plain_method();
+    method.direct.local_lights = local_lights;
+    method.direct.volume_threshold = threshold;
+    method.direct.shadow.lamps = false;
+    return method;
+}
+
 inline glm::dvec3 vector_at(const Image& image, int x, int y) {
     return {image.at(x, y, 0), image.at(x, y, 1), image.at(x, y, 2)};
 }
@@ -86,6 +95,18 @@ inline Mesh make_ball(unsigned rings, float radius, const glm::vec3& centre) {
         ball.triangles.push_back({at(rings - 1, j), at(rings - 1, j + 1), last});
     }
     return ball;
+}
+
+// A corner, two balls, and panes before them, so that two layers are there nearly everywhere.
+inline Scene make_layered_scene() {
+    Scene scene = make_corner();
+    for (const glm::vec3& centre : {glm::vec3(-0.5f, 0.5f, 0.0f), glm::vec3(0.7f, 0.3f, -0.8f)}) {
+        Mesh ball = make_ball(8, 0.3f, centre);
+        scene.instances.push_back({"ball", static_cast<int>(scene.meshes.size()), glm::mat4(1.0f)});
+        scene.meshes.push_back(ball);
+    }
+    add_quad(scene, 1, {-0.5f, 0.3f, 1.0f}, {1.5f, 0.0f, 0.3f}, {0.0f, 1.2f, 0.0f});
+    return scene;
 }
 
 }  // namespace plumb
