@@ -1,4 +1,8 @@
 // Light carried on from frame to frame, against the CPU and against bounces within a frame.
+#include <array>
+#include <limits>
+#include <string>
+
 #include <gmock/gmock.h>
 
 #include "gl_test.h"
@@ -171,19 +175,24 @@ Scene sliding_block() {
 struct Carried {
     glm::dvec3 radiance{0.0};
     bool ambiguous = false;
+    int from = 0;  // the layer of the frame before that it comes from
 };
 
 glm::dvec3 colour_at(const Image& image, int x, int y) {
     return {image.at(x, y, 0), image.at(x, y, 1), image.at(x, y, 2)};
 }
 
+// Of the point that `layer` shows, which any of the first `kept_layers` may have held, and reflected by `reflecting`.
 Carried carried_on(const Frame& now, const Frame& before, const View& view, const View& previous,
-                   const RadiositySettings& settings, const glm::mat4& moved_back, int x, int y) {
-    const float depth = now.plane("depth").at(x, y);
+                   const RadiositySettings& settings, const glm::mat4& moved_back, int x, int y, int layer = 0,
+                   int kept_layers = 1, int reflecting = 0) {
+    const std::array<std::string, 2> prefixes{"", "layer2."};
+    const std::string& prefix = prefixes.at(static_cast<std::size_t>(layer));
+    const float depth = now.plane(prefix + "depth").at(x, y);
     if (std::isinf(depth)) return {};
     glm::vec4 world =
         view.camera().world_from_camera * glm::vec4(view.camera_space_point(x + 0.5f, y + 0.5f, depth), 1.0f);
-    const glm::dvec3 moved = colour_at(now.plane("displacement"), x, y);
+    const glm::dvec3 moved = colour_at(now.plane(prefix + "displacement"), x, y);
     if (glm::length(moved) > 0.0) world = moved_back * world;
     const glm::vec3 then = previous.project(glm::vec3(world));
     Carried result;
@@ -191,15 +200,25 @@ Carried carried_on(const Frame& now, const Frame& before, const View& view, cons
         result.ambiguous |= std::abs(coordinate - std::round(coordinate)) < 1e-3f;
     const int px = static_cast<int>(std::floor(then.x)), py = static_cast<int>(std::floor(then.y));
     if (px < 0 || py < 0 || px >= width || py >= height || then.z <= 0.0f) return result;
-    const float depth_then = before.plane("depth").at(px, py);
-    if (std::isinf(depth_then)) return result;
-    const glm::vec4 found = previous.camera().world_from_camera *
-                            glm::vec4(previous.camera_space_point(px + 0.5f, py + 0.5f, depth_then), 1.0f);
-    const double distance = glm::length(glm::dvec3(found) - glm::dvec3(world));
-    const double t = std::clamp((distance - settings.carry_from) / (settings.carry_to - settings.carry_from), 0.0, 1.0);
+    double nearest = std::numeric_limits<double>::infinity();
+    glm::dvec3 light(0.0);
+    for (int kept = 0; kept < kept_layers; ++kept) {
+        const std::string& held = prefixes.at(static_cast<std::size_t>(kept));
+        const float depth_then = before.plane(held + "depth").at(px, py);
+        if (std::isinf(depth_then)) continue;
+        const glm::vec4 found = previous.camera().world_from_camera *
+                                glm::vec4(previous.camera_space_point(px + 0.5f, py + 0.5f, depth_then), 1.0f);
+        const double distance = glm::length(glm::dvec3(found) - glm::dvec3(world));
+        result.ambiguous |= std::abs(distance - nearest) < 1e-5;
+        if (distance >= nearest) continue;
+        nearest = distance;
+        light = colour_at(before.plane(held + "radiosity"), px, py);
+        result.from = kept;
+    }
+    const double t = std::clamp((nearest - settings.carry_from) / (settings.carry_to - settings.carry_from), 0.0, 1.0);
     const double weight = (1.0 - settings.damping) * (1.0 - t * t * (3.0 - 2.0 * t));
-    result.radiance = weight / std::numbers::pi * colour_at(now.plane("albedo"), x, y) *
-                      counterpart::boosted(settings, colour_at(before.plane("irradiance"), px, py));
+    const Image& albedo = now.plane(prefixes.at(static_cast<std::size_t>(reflecting)) + "albedo");
+    result.radiance = weight / std::numbers::pi * colour_at(albedo, x, y) * counterpart::boosted(settings, light);
     return result;
 }
 
@@ -217,7 +236,7 @@ TEST_P(RadiosityCarryTest, FindsPointsAgainThatTheCameraAndObjectsMoved) {
     const Camera to = Camera::look_at("to", {1.3f, 1.65f, 3.1f}, {-0.08f, 0.62f, -0.4f}, 0.8f);
     const Moment then{View(from, width, height), 0.2}, now{View(to, width, height), 0.4};
     Pipeline pipeline(context(), scene, exact(settings),
-                      wanted({"depth", "albedo", "direct", "displacement", "irradiance", "radiosity.sent"}), width,
+                      wanted({"depth", "albedo", "direct", "displacement", "radiosity", "radiosity.sent"}), width,
                       height);
     const Frame before = pipeline.render({.now = then}).frame;
     const Frame after = pipeline.render({.now = now, .previous = then}).frame;
@@ -242,6 +261,61 @@ TEST_P(RadiosityCarryTest, FindsPointsAgainThatTheCameraAndObjectsMoved) {
     EXPECT_GT(lost, 50) << "come to light, or seen at another slant";
     EXPECT_GT(found, 1000);
     EXPECT_GT(moving, 50) << "found again on the block";
+}
+
+// What both layers send, whose light each layer's own points held, or the first one's.
+TEST_P(RadiosityCarryTest, BothLayersFindPointsAgainInEitherLayer) {
+    const Scene scene = sliding_block();
+    const Camera from = Camera::look_at("from", {0.1f, 1.2f, 3.2f}, {-0.1f, 0.5f, -0.4f}, 0.8f);
+    const Camera to = Camera::look_at("to", {0.2f, 1.25f, 3.1f}, {-0.08f, 0.52f, -0.4f}, 0.8f);
+    const Moment then{View(from, width, height), 0.2}, now{View(to, width, height), 0.5};
+    const glm::mat4 moved_back = scene.instances.back().pose(0.2) * glm::inverse(scene.instances.back().pose(0.5));
+    std::vector<std::string> planes;
+    for (const std::string prefix : {"", "layer2."}) {
+        for (const char* plane : {"depth", "albedo", "direct", "displacement", "radiosity.sent"})
+            planes.push_back(prefix + plane);
+    }
+    planes.insert(planes.end(), {"radiosity", "irradiance"});
+    for (const SecondLayerIndirect second_layer :
+         {SecondLayerIndirect::gather, SecondLayerIndirect::reuse, SecondLayerIndirect::none}) {
+        SCOPED_TRACE(testing::Message() << "second layer: " << static_cast<int>(second_layer));
+        const RadiositySettings settings{
+            .second_layer = second_layer, .carry = true, .damping = 0.2f, .carry_from = 0.01f, .carry_to = 0.08f};
+        const bool gathers = second_layer == SecondLayerIndirect::gather;
+        std::vector<std::string> asked = planes;
+        if (gathers) asked.emplace_back("layer2.radiosity");
+        Pipeline pipeline(context(), scene, exact(settings), wanted(asked), width, height);
+        const Frame before = pipeline.render({.now = then}).frame;
+        const Frame after = pipeline.render({.now = now, .previous = then}).frame;
+        std::array<int, 2> found{}, from_the_other{};
+        for (int layer = 0; layer < 2; ++layer) {
+            const std::string prefix = layer == 0 ? "" : "layer2.";
+            for (int y = 0; y < height; ++y) {
+                for (int x = 0; x < width; ++x) {
+                    if (std::isinf(after.plane(prefix + "depth").at(x, y))) continue;
+                    Carried expected = carried_on(after, before, now.view, then.view, settings, moved_back, x, y,
+                                                  gathers ? layer : 0, gathers ? 2 : 1, layer);
+                    if (layer == 1 && second_layer == SecondLayerIndirect::none) expected.radiance = glm::dvec3(0.0);
+                    if (expected.ambiguous) continue;
+                    const glm::dvec3 actual = colour_at(after.plane(prefix + "radiosity.sent"), x, y) -
+                                              colour_at(after.plane(prefix + "direct"), x, y);
+                    // As for one layer above.
+                    ASSERT_LT(glm::length(actual - expected.radiance), 2e-4 * (0.1 + glm::length(expected.radiance)))
+                        << "layer " << layer << ", pixel (" << x << ", " << y << "): " << actual.x << ", expected "
+                        << expected.radiance.x;
+                    const bool is_found = glm::length(expected.radiance) > 0.0;
+                    found[static_cast<std::size_t>(layer)] += is_found;
+                    from_the_other[static_cast<std::size_t>(layer)] += is_found && expected.from != layer;
+                }
+            }
+        }
+        EXPECT_GT(found[0], 1000);
+        if (second_layer == SecondLayerIndirect::none) continue;
+        EXPECT_GT(found[1], 50);
+        if (!gathers) continue;
+        EXPECT_GT(from_the_other[0], 10) << "came to light";
+        EXPECT_GT(from_the_other[1], 5) << "went behind the block";
+    }
 }
 
 // What turns into view was in the guard band before.
