@@ -3,6 +3,7 @@
 
 #include "gl_test.h"
 #include "light_scenes.h"
+#include "radiosity_agreement.h"
 #include "rasterizer/gl_error.h"
 
 namespace plumb {
@@ -61,6 +62,32 @@ TEST_P(EmittersShineTest, EmissionIsGatheredAsReflectedLightWouldBe) {
         largest = std::max(largest, static_cast<double>(expected.values()[i]));
     }
     EXPECT_GT(largest, 0.1);
+}
+
+// What each tap brings is what its surface reflects and emits, of both layers.
+TEST_P(EmittersShineTest, TapsBringDirectLightAndEmissionAsTheCounterpartHasIt) {
+    Scene scene = make_glowing_corner();
+    add_quad(scene, 0, {-1.2f, 0.0f, 0.5f}, {1.6f, 0.0f, 0.0f}, {0.0f, 1.0f, 0.0f});
+    scene.point_lights.push_back({"lamp", {0.4f, 1.9f, 0.9f}, {2.0f, 3.0f, 4.0f}});
+    const View view = corner_view();
+    Method method = shining_method(2);
+    method.direct.shadow.lamps = false;
+    method.gbuffer.radiance_format = RadianceFormat::rgba32f;
+    method.radiosity.blur.radius = 0;
+    std::vector<std::string> planes = planes_of_layers;
+    for (const char* plane : {"irradiance", "confidence", "emission", "layer2.emission"}) planes.emplace_back(plane);
+    const Frame frame = render(context(), scene, view, planes, method);
+    counterpart::Layers layers = layers_of_frame(view, frame);
+    double emitted = 0.0;
+    for (int layer = 0; layer < 2; ++layer) {
+        const Image& emission = frame.plane(layer == 0 ? "emission" : "layer2.emission");
+        for (std::size_t i = 0; i < emission.values().size(); ++i) {
+            layers.radiance[layer].values()[i] += emission.values()[i];
+            emitted += layer == 1 ? emission.values()[i] : 0.0;
+        }
+    }
+    EXPECT_GT(emitted, 100.0) << "the second layer glows";
+    EXPECT_LT(expect_agreement(layers, method.radiosity, frame.plane("irradiance"), frame.plane("confidence")), 0.3);
 }
 
 // Hidden behind a pane the emitter is in the second layer only.
