@@ -1,4 +1,6 @@
 // The choices among shadow maps: cubes made in one pass, of linear distances, paraboloids, percentage-closer filtering.
+#include <functional>
+
 #include <fmt/format.h>
 
 #include "gl_test.h"
@@ -119,20 +121,26 @@ TEST(LightSet, MapsCoverMovingObjectsWhereverTheyCome) {
     }
 }
 
-// The orthographic map as rays see it: depth 1 at its near plane, 0 at its far plane, row 0 at the bottom.
+// A flat map as rays see it: depth as the map's projection has it, larger nearer to the light, 0 where nothing is; row
+// 0 at the bottom.
 struct TracedMap {
     TracedMap(const Scene& scene, const glm::dmat4& clip_from_world, int size_in)
         : size(size_in), depth(static_cast<std::size_t>(size_in) * size_in, 0.0) {
         const RayCaster caster(scene);
         const glm::dmat4 world_from_clip = glm::inverse(clip_from_world);
+        const auto unproject = [&](double x, double y, double z) {
+            const glm::dvec4 p = world_from_clip * glm::dvec4(x, y, z, 1.0);
+            return glm::dvec3(p) / p.w;
+        };
         for (int j = 0; j < size; ++j) {
             for (int i = 0; i < size; ++i) {
                 const double x = 2.0 * (i + 0.5) / size - 1.0, y = 2.0 * (j + 0.5) / size - 1.0;
-                const glm::dvec3 from(world_from_clip * glm::dvec4(x, y, 1.0, 1.0));
-                const glm::dvec3 to(world_from_clip * glm::dvec4(x, y, 0.0, 1.0));
-                const double length = glm::length(to - from);
-                const CastHit hit = caster.cast(from, (to - from) / length, 0.0, length);
-                if (hit.hit) depth[static_cast<std::size_t>(j) * size + i] = 1.0 - hit.distance / length;
+                // From the near plane on; 0 would be infinitely far away on a spot light's.
+                const glm::dvec3 from = unproject(x, y, 1.0), beyond = unproject(x, y, 0.5);
+                const CastHit hit = caster.cast(from, glm::normalize(beyond - from), 0.0, 100.0);
+                if (!hit.hit) continue;
+                const glm::dvec4 clip = clip_from_world * glm::dvec4(hit.point, 1.0);
+                depth[static_cast<std::size_t>(j) * size + i] = clip.z / clip.w;
             }
         }
     }
@@ -148,53 +156,107 @@ struct TracedMap {
         return (1 - a) * (1 - b) * lit(i, j, z) + a * (1 - b) * lit(i + 1, j, z) + (1 - a) * b * lit(i, j + 1, z) +
                a * b * lit(i + 1, j + 1, z);
     }
+    // The mean of those around a world-space point.
+    double filter(const glm::dmat4& clip_from_world, const glm::dvec3& p, int radius) const {
+        const glm::dvec4 clip = clip_from_world * glm::dvec4(p, 1.0);
+        const glm::dvec3 ndc = glm::dvec3(clip) / clip.w;
+        double sum = 0.0;
+        for (int dy = -radius; dy <= radius; ++dy) {
+            for (int dx = -radius; dx <= radius; ++dx) {
+                sum += compare(0.5 + 0.5 * ndc.x + static_cast<double>(dx) / size,
+                               0.5 + 0.5 * ndc.y + static_cast<double>(dy) / size, ndc.z);
+            }
+        }
+        return sum / ((2 * radius + 1) * (2 * radius + 1));
+    }
     int size;
     std::vector<double> depth;
 };
 
+// What a light sends to a surface that nothing shades, in red, and where its flat map is looked up for it.
+struct Lookup {
+    double irradiance;
+    glm::dvec3 raised;
+};
+
 // Percentage-closer filtering as it is written down, over a map that rays have made.
-TEST_P(ShadowAlternativesTest, PercentageCloserFilteringAveragesComparisons) {
+void expect_filtered_shadows(GlContext& context, const Scene& scene, const Method& method,
+                             const glm::dmat4& clip_from_world,
+                             const std::function<Lookup(const glm::dvec3&, const glm::dvec3&)>& lookup,
+                             int fewest_compared) {
+    const View view = near_view();
+    const int radius = method.direct.shadow.pcf_radius;
+    const TracedMap map(scene, clip_from_world, method.direct.shadow.map_size);
+    const Frame frame = render(context, scene, view, {"position", "normal", "albedo", "direct", "depth"}, method);
+    int compared = 0, different = 0, partly = 0;
+    for (int y = 0; y < view.height(); ++y) {
+        for (int x = 0; x < view.width(); ++x) {
+            if (std::isinf(frame.plane("depth").at(x, y))) continue;
+            const auto [irradiance, raised] =
+                lookup(vector_at(frame.plane("position"), x, y), vector_at(frame.plane("normal"), x, y));
+            if (irradiance == 0.0) continue;
+            const double expected = map.filter(clip_from_world, raised, radius);
+            const double unshadowed = frame.plane("albedo").at(x, y) / glm::pi<double>() * irradiance;
+            const double visibility = frame.plane("direct").at(x, y) / unshadowed;
+            ++compared;
+            partly += expected > 0.05 && expected < 0.95;
+            // Half floats, and filter weights of 8 bits.
+            different += std::abs(visibility - expected) > 0.012;
+        }
+    }
+    EXPECT_GT(compared, fewest_compared);
+    EXPECT_GT(partly, 100);
+    // Texels at silhouettes, whose centre the rasterizer's grid of 1/256 texel sees on the other side.
+    EXPECT_LE(different, compared / 100) << "radius " << radius << ": " << different << " of " << compared;
+}
+
+TEST_P(ShadowAlternativesTest, PercentageCloserFilteringAveragesComparisonsOfSuns) {
     Scene scene = make_shadow_scene();
     scene.directional_lights.push_back({"sun", glm::normalize(glm::vec3(-0.4f, -1.0f, -0.6f)), {3, 2, 1}});
-    const View view = near_view();
     for (const int radius : {0, 1, 3}) {
         Method method = plain_method();
         method.direct.shadow.map_size = 128;
         method.direct.shadow.pcf_radius = radius;
         const DirectionalRecord sun = LightSet(scene, method.direct).directionals[0];
-        const TracedMap map(scene, glm::dmat4(sun.clip_from_world), 128);
-        const Frame frame = render(context(), scene, view, {"position", "normal", "albedo", "direct", "depth"}, method);
-        int compared = 0, different = 0, partly = 0;
-        for (int y = 0; y < view.height(); ++y) {
-            for (int x = 0; x < view.width(); ++x) {
-                if (std::isinf(frame.plane("depth").at(x, y))) continue;
-                const glm::dvec3 n = vector_at(frame.plane("normal"), x, y), direction(sun.direction);
-                const double cosine = -glm::dot(n, direction);
-                if (cosine < 0.05) continue;
+        expect_filtered_shadows(
+            context(), scene, method, glm::dmat4(sun.clip_from_world),
+            [&](const glm::dvec3& p, const glm::dvec3& n) -> Lookup {
+                const double cosine = -glm::dot(n, glm::dvec3(sun.direction));
+                if (cosine < 0.05) return {0.0, p};
                 const double slope =
                     std::abs(glm::dot(n, glm::dvec3(sun.right))) + std::abs(glm::dot(n, glm::dvec3(sun.up)));
-                const glm::dvec3 raised = vector_at(frame.plane("position"), x, y) +
-                                          n * (method.direct.shadow.bias + (radius + 1.0) * sun.texel_size * slope);
-                const glm::dvec3 ndc(glm::dmat4(sun.clip_from_world) * glm::dvec4(raised, 1.0));
-                double sum = 0.0;
-                for (int dy = -radius; dy <= radius; ++dy) {
-                    for (int dx = -radius; dx <= radius; ++dx) {
-                        sum += map.compare(0.5 + 0.5 * ndc.x + dx / 128.0, 0.5 + 0.5 * ndc.y + dy / 128.0, ndc.z);
-                    }
-                }
-                const double expected = sum / ((2 * radius + 1) * (2 * radius + 1));
-                const double unshadowed = frame.plane("albedo").at(x, y) / glm::pi<double>() * 3.0 * cosine;
-                const double visibility = frame.plane("direct").at(x, y) / unshadowed;
-                ++compared;
-                partly += expected > 0.05 && expected < 0.95;
-                // Half floats, and filter weights of 8 bits.
-                different += std::abs(visibility - expected) > 0.012;
-            }
-        }
-        EXPECT_GT(compared, 3000);
-        EXPECT_GT(partly, 100);
-        // Texels at silhouettes, whose centre the rasterizer's grid of 1/256 texel sees on the other side.
-        EXPECT_LE(different, compared / 100) << "radius " << radius << ": " << different << " of " << compared;
+                return {3.0 * cosine, p + n * (method.direct.shadow.bias + (radius + 1.0) * sun.texel_size * slope)};
+            },
+            3000);
+    }
+}
+
+TEST_P(ShadowAlternativesTest, PercentageCloserFilteringAveragesComparisonsOfSpotLights) {
+    Scene scene = make_shadow_scene();
+    scene.spot_lights.push_back(
+        {"spot", {0.6f, 2.4f, 1.2f}, glm::normalize(glm::vec3(-0.4f, -1.0f, -0.6f)), {9, 7, 5}, 0.3f, 0.8f});
+    const SpotLight& light = scene.spot_lights[0];
+    for (const int radius : {0, 1, 3}) {
+        Method method = plain_method();
+        method.direct.shadow.map_size = 128;
+        method.direct.shadow.pcf_radius = radius;
+        const SpotRecord spot = LightSet(scene, method.direct).spots[0];
+        ASSERT_EQ(spot.map, 0);
+        expect_filtered_shadows(
+            context(), scene, method, glm::dmat4(spot.clip_from_world),
+            [&](const glm::dvec3& p, const glm::dvec3& n) -> Lookup {
+                const glm::dvec3 from_light = p - glm::dvec3(light.position), axis(light.direction);
+                const double d = glm::length(from_light), cosine = -glm::dot(n, from_light) / d;
+                const double along = glm::dot(from_light, axis) / d, outer = std::cos(0.8), inner = std::cos(0.3);
+                const double cone = std::clamp((along - outer) / (inner - outer), 0.0, 1.0);
+                // Little is left at the cone's rim to tell visibility by.
+                if (cosine < 0.05 || cone < 0.05) return {0.0, p};
+                const double n_axis = glm::dot(n, axis), texel = spot.texel_size * glm::dot(from_light, axis);
+                const double slope = std::sqrt(2.0 * (1.0 - n_axis * n_axis));
+                return {9.0 * cosine * cone * cone / (d * d),
+                        p + n * (method.direct.shadow.bias + (radius + 1.0) * texel * slope)};
+            },
+            2000);
     }
 }
 
