@@ -22,24 +22,32 @@ Timing median_timing(const std::vector<Timing>& frames) {
     return timing;
 }
 
-std::vector<Timing> time_interleaved(const std::vector<Pipeline*>& pipelines, const View& view, const Frame* truth,
-                                     const ExperimentTiming& settings) {
+std::vector<Timing> time_interleaved(const std::vector<TimedFrame>& subjects, const ExperimentTiming& settings) {
     for (int i = 0; i < settings.warm_up; ++i) {
-        for (Pipeline* pipeline : pipelines) pipeline->time_passes(view, truth);
+        for (const TimedFrame& render : subjects) render();
     }
-    std::vector<std::vector<Timing>> frames(pipelines.size());
+    std::vector<std::vector<Timing>> frames(subjects.size());
     for (int i = 0; i < settings.repetitions; ++i) {
-        for (std::size_t j = 0; j < pipelines.size(); ++j) {
+        for (std::size_t j = 0; j < subjects.size(); ++j) {
             Timing frame;
-            frame.passes = pipelines[j]->time_passes(view, truth);
+            frame.passes = subjects[j]();
             for (const PassTiming& pass : frame.passes) frame.median += pass.milliseconds;
             frames[j].push_back(std::move(frame));
         }
     }
     std::vector<Timing> timings;
     timings.reserve(frames.size());
-    for (const std::vector<Timing>& of_pipeline : frames) timings.push_back(median_timing(of_pipeline));
+    for (const std::vector<Timing>& of_subject : frames) timings.push_back(median_timing(of_subject));
     return timings;
+}
+
+std::vector<Timing> time_interleaved(const std::vector<Pipeline*>& pipelines, const View& view, const Frame* truth,
+                                     const ExperimentTiming& settings) {
+    std::vector<TimedFrame> subjects;
+    subjects.reserve(pipelines.size());
+    for (Pipeline* pipeline : pipelines)
+        subjects.emplace_back([=, &view] { return pipeline->time_passes(view, truth); });
+    return time_interleaved(subjects, settings);
 }
 
 }  // namespace plumb

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+#include <utility>
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -15,16 +15,19 @@ std::string print_duration(double seconds) {
     return fmt::format("{:.1f} h", seconds / 3600.0);
 }
 
-ProgressLine::ProgressLine() : terminal_(::isatty(STDERR_FILENO) == 1), start_(std::chrono::steady_clock::now()) {
+ProgressLine::ProgressLine()
+    : ProgressLine({stderr, ::isatty(STDERR_FILENO) == 1, [] { return std::chrono::steady_clock::now(); }}) {}
+
+ProgressLine::ProgressLine(ProgressOutput output) : output_(std::move(output)), start_(output_.now()) {
     // A short job says nothing elsewhere than on a terminal.
-    last_ = std::chrono::steady_clock::now() - (terminal_ ? std::chrono::hours(1) : std::chrono::hours(0));
+    last_ = start_ - (output_.terminal ? std::chrono::hours(1) : std::chrono::hours(0));
 }
 
 ProgressLine::~ProgressLine() { clear(); }
 
 void ProgressLine::show(double fraction, const std::string& text) {
-    const auto now = std::chrono::steady_clock::now();
-    if (now - last_ < (terminal_ ? std::chrono::milliseconds(100) : std::chrono::milliseconds(5000))) return;
+    const auto now = output_.now();
+    if (now - last_ < (output_.terminal ? std::chrono::milliseconds(100) : std::chrono::milliseconds(5000))) return;
     last_ = now;
     fraction = std::clamp(fraction, 0.0, 1.0);
     const double elapsed = std::chrono::duration<double>(now - start_).count();
@@ -34,26 +37,26 @@ void ProgressLine::show(double fraction, const std::string& text) {
     if (elapsed > enough_seconds && fraction > enough_done)
         line += fmt::format("{} left  ", print_duration(elapsed * (1.0 - fraction) / fraction));
     line += text;
-    if (!terminal_) {
-        fmt::print(stderr, "{}\n", line);
+    if (!output_.terminal) {
+        fmt::print(output_.stream, "{}\n", line);
     } else {
         constexpr int width = 24;
         const int filled = static_cast<int>(std::lround(fraction * width));
-        fmt::print(stderr, "\r\x1b[K[{:#<{}}{: <{}}] {}", "", filled, "", width - filled, line);
+        fmt::print(output_.stream, "\r\x1b[K[{:#<{}}{: <{}}] {}", "", filled, "", width - filled, line);
         shown_ = true;
     }
-    std::fflush(stderr);
+    std::fflush(output_.stream);
 }
 
 void ProgressLine::clear() {
-    if (shown_) fmt::print(stderr, "\r\x1b[K");
-    std::fflush(stderr);
+    if (shown_) fmt::print(output_.stream, "\r\x1b[K");
+    std::fflush(output_.stream);
     shown_ = false;
 }
 
 void ProgressLine::log(const std::string& text) {
     clear();
-    fmt::print(stderr, "{}\n", text);
+    fmt::print(output_.stream, "{}\n", text);
 }
 
 }  // namespace plumb

@@ -2,14 +2,24 @@
 #pragma once
 
 #include <chrono>
+#include <cstdio>
+#include <functional>
 #include <string>
 
 namespace plumb {
+
+// Where progress is written to, and what time it is there.
+struct ProgressOutput {
+    std::FILE* stream = nullptr;
+    bool terminal = false;
+    std::function<std::chrono::steady_clock::time_point()> now;
+};
 
 class ProgressLine {
 public:
     // Writes to standard error, so that standard output holds results only.
     ProgressLine();
+    explicit ProgressLine(ProgressOutput output);
     ~ProgressLine();
     ProgressLine(const ProgressLine&) = delete;
     ProgressLine& operator=(const ProgressLine&) = delete;
@@ -23,7 +33,8 @@ public:
     void log(const std::string& text);
 
 private:
-    bool terminal_ = false, shown_ = false;
+    ProgressOutput output_;
+    bool shown_ = false;
     std::chrono::steady_clock::time_point start_, last_;
 };
 
