@@ -87,6 +87,93 @@ CLI::Option* add_choice(CLI::App& command, const std::string& name, Value& value
         ->default_str(standard);
 }
 
+void add_samples(CLI::App& command, ReferenceOptions& options) {
+    const std::string group = "Samples";
+    CLI::Option* samples = command
+                               .add_option_function<std::string>(
+                                   "--samples", [&options](const std::string& text) { read_samples(text, options); },
+                                   "Samples per pixel (even), the most with a target error; or a shard, samples "
+                                   "FIRST to END - 1 of every pixel")
+                               ->type_name("N|FIRST..END")
+                               ->default_str(fmt::format("{}", options.settings.samples))
+                               ->group(group);
+    CLI::Option* target =
+        command.add_option("--target-error", options.settings.target_error, "Stop below this relative standard error")
+            ->check(CLI::Range(0.0, 1.0))
+            ->group(group);
+    command.add_option("--seed", options.settings.seed, "Seed of the samples")->capture_default_str()->group(group);
+    add_choice<SamplePoints>(command, "--points", options.settings.points,
+                             {{"sobol", SamplePoints::sobol}, {"random", SamplePoints::random}}, "sobol",
+                             "Owen-scrambled Sobol points, or independent random ones to compare with")
+        ->group(group);
+    command
+        .add_option("--merge", options.merge,
+                    "Join shards that follow each other from sample 0 on: the bits of one run")
+        ->type_name("SHARD...")
+        ->check(CLI::ExistingFile)
+        ->excludes(samples)
+        ->excludes(target)
+        ->group(group);
+    command.add_option("--threads", options.threads, "Threads; 0: all")
+        ->check(CLI::NonNegativeNumber)
+        ->capture_default_str()
+        ->group(group);
+}
+
+// Returns the option of how emitters are sampled.
+CLI::Option* add_light_paths(CLI::App& command, ReferenceOptions& options) {
+    const std::string group = "Light paths";
+    command
+        .add_option("--roulette", options.settings.roulette_after,
+                    "Bounces before paths may end at random (unbiased); 0: all paths go on to the last bounce")
+        ->check(CLI::NonNegativeNumber)
+        ->capture_default_str()
+        ->group(group);
+    return add_choice<EmitterSampling>(command, "--emitters", options.settings.emitter_sampling,
+                                       {{"lights", EmitterSampling::lights},
+                                        {"directions", EmitterSampling::directions},
+                                        {"both", EmitterSampling::both}},
+                                       "both",
+                                       "How emissive surfaces and the environment are found; the "
+                                       "expectation is the same")
+        ->group(group);
+}
+
+void add_camera(CLI::App& command, ReferenceOptions& options) {
+    const std::string group = "Camera";
+    command.add_flag("--antialias", options.settings.antialias, "Spread primary rays over the pixel")->group(group);
+    command
+        .add_option_function<std::string>(
+            "--shutter", [&options](const std::string& text) { read_shutter(text, options); },
+            "Seconds of scene time that the shutter is open; moving objects and a --path's camera blur")
+        ->type_name("OPEN..CLOSE")
+        ->excludes(command.get_option("--time"))
+        ->group(group);
+    command
+        .add_option("--separation", options.settings.minimum_separation,
+                    "Metres between layers, of layer2.* planes and of the oracle")
+        ->check(CLI::NonNegativeNumber)
+        ->capture_default_str()
+        ->group(group);
+}
+
+void add_oracle(CLI::App& command, CLI::Option* emitters, ReferenceOptions& options) {
+    const std::string group = "Oracle: the best that a method could make of what the view's layers hold";
+    CLI::Option* oracle =
+        command
+            .add_option("--oracle", options.oracle_layers, "Rays meet only the first K layers; 0: all that is in view")
+            ->type_name("K")
+            ->check(CLI::Range(0, 99))
+            ->excludes(emitters)  // an oracle always samples the lights
+            ->group(group);
+    command
+        .add_option("--oracle-guard-band", options.oracle_guard_band, "Pixels that the layers go on beyond each edge")
+        ->type_name("PIXELS")
+        ->check(CLI::Range(0, 16384))
+        ->needs(oracle)
+        ->group(group);
+}
+
 bool needs_quotes(const std::string& argument) {
     return argument.empty() ||
            argument.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=.,:/@%") !=
@@ -104,83 +191,13 @@ void ReferenceOptions::add_to(CLI::App& command) {
     command.get_option("--planes")
         ->description(
             "Planes to render, separated by commas: ao, direct, indirect, indirect.K, irradiance, reflection, "
-            "emission, "
-            "total, and depth, normal, albedo, position, motion, seen_before, instance, also as layer2.depth and so "
-            "on");
+            "emission, total, and depth, normal, albedo, position, motion, seen_before, instance, also as layer2.depth "
+            "and so on");
 
-    std::string group = "Samples";
-    CLI::Option* samples = command
-                               .add_option_function<std::string>(
-                                   "--samples", [this](const std::string& text) { read_samples(text, *this); },
-                                   "Samples per pixel (even), the most with a target error; or a shard, samples "
-                                   "FIRST to END - 1 of every pixel")
-                               ->type_name("N|FIRST..END")
-                               ->default_str(fmt::format("{}", settings.samples))
-                               ->group(group);
-    CLI::Option* target =
-        command.add_option("--target-error", settings.target_error, "Stop below this relative standard error")
-            ->check(CLI::Range(0.0, 1.0))
-            ->group(group);
-    command.add_option("--seed", settings.seed, "Seed of the samples")->capture_default_str()->group(group);
-    add_choice<SamplePoints>(command, "--points", settings.points,
-                             {{"sobol", SamplePoints::sobol}, {"random", SamplePoints::random}}, "sobol",
-                             "Owen-scrambled Sobol points, or independent random ones to compare with")
-        ->group(group);
-    command.add_option("--merge", merge, "Join shards that follow each other from sample 0 on: the bits of one run")
-        ->type_name("SHARD...")
-        ->check(CLI::ExistingFile)
-        ->excludes(samples)
-        ->excludes(target)
-        ->group(group);
-    command.add_option("--threads", threads, "Threads; 0: all")
-        ->check(CLI::NonNegativeNumber)
-        ->capture_default_str()
-        ->group(group);
-
-    group = "Light paths";
-    command
-        .add_option("--roulette", settings.roulette_after,
-                    "Bounces before paths may end at random (unbiased); 0: all paths go on to the last bounce")
-        ->check(CLI::NonNegativeNumber)
-        ->capture_default_str()
-        ->group(group);
-    CLI::Option* emitters = add_choice<EmitterSampling>(command, "--emitters", settings.emitter_sampling,
-                                                        {{"lights", EmitterSampling::lights},
-                                                         {"directions", EmitterSampling::directions},
-                                                         {"both", EmitterSampling::both}},
-                                                        "both",
-                                                        "How emissive surfaces and the environment are found; the "
-                                                        "expectation is the same")
-                                ->group(group);
-
-    group = "Camera";
-    command.add_flag("--antialias", settings.antialias, "Spread primary rays over the pixel")->group(group);
-    command
-        .add_option_function<std::string>(
-            "--shutter", [this](const std::string& text) { read_shutter(text, *this); },
-            "Seconds of scene time that the shutter is open; moving objects and a --path's camera blur")
-        ->type_name("OPEN..CLOSE")
-        ->excludes(command.get_option("--time"))
-        ->group(group);
-    command
-        .add_option("--separation", settings.minimum_separation,
-                    "Metres between layers, of layer2.* planes and of the oracle")
-        ->check(CLI::NonNegativeNumber)
-        ->capture_default_str()
-        ->group(group);
-
-    group = "Oracle: the best that a method could make of what the view's layers hold";
-    CLI::Option* oracle =
-        command.add_option("--oracle", oracle_layers, "Rays meet only the first K layers; 0: all that is in view")
-            ->type_name("K")
-            ->check(CLI::Range(0, 99))
-            ->excludes(emitters)  // an oracle always samples the lights
-            ->group(group);
-    command.add_option("--oracle-guard-band", oracle_guard_band, "Pixels that the layers go on beyond each edge")
-        ->type_name("PIXELS")
-        ->check(CLI::Range(0, 16384))
-        ->needs(oracle)
-        ->group(group);
+    add_samples(command, *this);
+    CLI::Option* emitters = add_light_paths(command, *this);
+    add_camera(command, *this);
+    add_oracle(command, emitters, *this);
 }
 
 ReferenceSettings ReferenceOptions::settings_for(const Scene& scene, const View& view_at_end) const {
