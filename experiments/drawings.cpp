@@ -1,12 +1,13 @@
 #include "experiments/drawings.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include <fmt/format.h>
 
-#include "experiments/page.h"
 #include "experiments/svg_chart.h"
+#include "experiments/svg_parts.h"
 #include "rasterizer/sample_spiral.h"
 
 namespace plumb {
@@ -124,14 +125,11 @@ std::string print_filter(const Drawing& drawing) {
     before[before.size() / 2] = 1.0;
     const std::vector<double> after = filtered_square(drawing.size, drawing.radius);
     const double brightest = after[after.size() / 2];
-    std::string svg = fmt::format(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" viewBox=\"0 0 {0:.0f} "
-        "{1:.0f}\" "
-        "font-family=\"DejaVu Sans, Helvetica, sans-serif\" fill=\"#222222\" role=\"img\">\n<title>{2}</title>\n"
-        "<rect width=\"{0:.0f}\" height=\"{1:.0f}\" fill=\"#ffffff\"/>\n<text x=\"{3:.0f}\" y=\"24\" font-size=\"15\" "
-        "font-weight=\"bold\">{2}</text>\n<text x=\"{3:.0f}\" y=\"50\" font-size=\"11\">before</text>\n"
-        "<text x=\"{4:.0f}\" y=\"50\" font-size=\"11\">after, white is {5:.3f}</text>\n",
-        3 * gap + 2 * side, head + side + gap, escape_html(drawing.title), gap, 2 * gap + side, brightest);
+    const double width =
+        std::max(3.0 * gap + 2.0 * side, svg_title_letter_width * static_cast<double>(drawing.title.size()));
+    std::string svg = open_svg(width, head + side + gap, drawing.title);
+    svg += svg_text(gap, head - 8.0, "start", "before");
+    svg += svg_text(2.0 * gap + side, head - 8.0, "start", fmt::format("after, white is {:.3f}", brightest));
     svg += grey_square(before, drawing.size, gap, head, side, 1.0);
     svg += grey_square(after, drawing.size, 2 * gap + side, head, side, brightest);
     return svg + "</svg>\n";

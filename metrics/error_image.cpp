@@ -26,16 +26,8 @@ Image absolute_error(const Image& test, const Image& reference) {
     return error_image(test, reference, [](double v, double r) { return std::abs(v - r); });
 }
 
-Image squared_error(const Image& test, const Image& reference) {
-    return error_image(test, reference, [](double v, double r) { return (v - r) * (v - r); });
-}
-
 Image signed_difference(const Image& test, const Image& reference) {
     return error_image(test, reference, [](double v, double r) { return v - r; });
-}
-
-Image relative_error(const Image& test, const Image& reference) {
-    return error_image(test, reference, [](double v, double r) { return std::abs(v - r) / (std::abs(r) + 0.01); });
 }
 
 Image mean_of_channels(const Image& image) {

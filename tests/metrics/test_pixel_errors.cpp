@@ -41,6 +41,28 @@ std::string message_of(Action action) {
     return "no ImageError";
 }
 
+// NumPy 1.24.2 and scikit-image 0.19.3 (Debian 12), on the images of test_ssim.cpp:
+//
+//   import numpy as np
+//   from skimage.metrics import peak_signal_noise_ratio
+//   y, x = np.mgrid[0:37, 0:53]
+//   value = lambda change: np.stack([((x * 37 + y * 91 + x * y + c * 17 + change) % 256) / 256.0 for c in range(3)],
+//   -1) r, v = value(0), value((x // 8 + y // 8) * 5) e = v - r np.abs(e).mean(), e.mean(), np.percentile(np.abs(e),
+//   [50, 95, 99]), peak_signal_noise_ratio(r, v, data_range=1.0) for w in ((r + 0.01)**2, r**2 + 0.01, r**2 + 0.001):
+//   (e**2 / w).mean()
+TEST(PixelErrors, MatchNumPy) {
+    const PixelErrors errors = pixel_errors(test::pattern(37, 53, true), test::pattern(37, 53, false), 1.0);
+    EXPECT_NEAR(errors.mae, 0.16325110487846337, rounding);
+    EXPECT_NEAR(errors.bias, -0.002147341917389087, rounding);
+    EXPECT_NEAR(errors.relative_mse_pbrt, 1.1802320524960377, rounding);
+    EXPECT_NEAR(errors.relative_mse_tev, 0.23428578192357158, rounding);
+    EXPECT_NEAR(errors.relative_mse_falcor, 0.5927745903280035, rounding);
+    EXPECT_NEAR(errors.psnr, 10.83603534216654, 10 * rounding);
+    EXPECT_EQ(errors.median, 0.09765625);
+    EXPECT_EQ(errors.percentile_95, 0.8828125);
+    EXPECT_EQ(errors.percentile_99, 0.94140625);
+}
+
 TEST(PixelErrors, MatchFourValuesComputedByHand) {
     // Differences: 0.5, -1, 0, 2; squares 0.25, 1, 0, 4.
     const PixelErrors errors = pixel_errors(row({1.5f, 1.0f, 0.25f, 2.0f}), row({1.0f, 2.0f, 0.25f, 0.0f}), 2.0);
@@ -157,9 +179,7 @@ TEST(PixelErrors, AgreeWithOiiotool) {
 TEST(ErrorImages, MatchValuesComputedByHand) {
     const Image test = row({1.5f, 1.0f, nan}), reference = row({1.0f, 2.0f, 0.0f});
     EXPECT_FLOAT_EQ(absolute_error(test, reference).at(1, 0), 1.0f);
-    EXPECT_FLOAT_EQ(squared_error(test, reference).at(0, 0), 0.25f);
     EXPECT_FLOAT_EQ(signed_difference(test, reference).at(1, 0), -1.0f);
-    EXPECT_FLOAT_EQ(relative_error(test, reference).at(0, 0), static_cast<float>(0.5 / 1.01));
     EXPECT_TRUE(std::isnan(absolute_error(test, reference).at(2, 0)));
     Image colour(1, 1, 3, 1.0f);
     colour.at(0, 0, 2) = 4.0f;
