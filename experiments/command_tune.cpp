@@ -11,6 +11,7 @@
 #include "experiments/backend_option.h"
 #include "experiments/cache_option.h"
 #include "experiments/command.h"
+#include "experiments/disk_use.h"
 #include "experiments/exit_code.h"
 #include "experiments/interruption.h"
 #include "experiments/statistics.h"
@@ -62,6 +63,8 @@ void refuse_overridden(const Experiment& experiment, const Method& method,
     }
 }
 
+std::string error_text(const TuningCost& cost) { return cost.told() ? fmt::format("{:.4g}", cost.error) : "refused"; }
+
 std::string print_views(const std::vector<ViewCost>& before, const std::vector<ViewCost>& after) {
     using Align = TerminalTable::Align;
     TerminalTable table({{"scene"},
@@ -75,20 +78,28 @@ std::string print_views(const std::vector<ViewCost>& before, const std::vector<V
     for (std::size_t i = 0; i < before.size(); ++i) {
         const TuningCost &a = before[i].cost, &b = after[i].cost;
         table.add_row({before[i].view.scene, before[i].view.view, before[i].view.held_out ? "held out" : "training",
-                       fmt::format("{:.4g}", a.error), fmt::format("{:.4g}", b.error),
-                       fmt::format("{:.3f}", b.error / a.error), fmt::format("{:.3g}", a.milliseconds),
-                       fmt::format("{:.3g}", b.milliseconds)});
+                       error_text(a), error_text(b),
+                       a.told() && b.told() ? fmt::format("{:.3f}", b.error / a.error) : "-",
+                       fmt::format("{:.3g}", a.milliseconds), fmt::format("{:.3g}", b.milliseconds)});
     }
     return table.print();
 }
 
 std::string print_ratio(const std::vector<ViewCost>& before, const std::vector<ViewCost>& after) {
     std::vector<double> ratios;
-    for (std::size_t i = 0; i < before.size(); ++i) ratios.push_back(after[i].cost.error / before[i].cost.error);
+    for (std::size_t i = 0; i < before.size(); ++i) {
+        const TuningCost &a = before[i].cost, &b = after[i].cost;
+        if (a.told() && b.told()) ratios.push_back(b.error / a.error);
+    }
     const RatioSummary ratio = summarise_ratios(ratios);
+    if (ratio.count == 0) return "the truth is too noisy for a statement";
     if (ratio.count < 2) return fmt::format("{:.3f} times the RMSE on the one view", ratio.mean);
     return fmt::format("{:.3f} times the RMSE (95 % interval {:.3f} to {:.3f} over {} views)", ratio.mean, ratio.lower,
                        ratio.upper, ratio.count);
+}
+
+std::string name_of_tuned(const TuneCommandOptions& options, const Method& start) {
+    return options.name.empty() ? start.name + "_tuned" : options.name;
 }
 
 int run(TuneCommandOptions options, const CommonOptions& common) {
@@ -102,9 +113,15 @@ int run(TuneCommandOptions options, const CommonOptions& common) {
     experiment.baseline = start.name;
     refuse_overridden(experiment, start, parameters);
     options.run.stop = &interruption_flag();
+    if (options.output.empty())
+        options.output = std::filesystem::path("out") / (name_of_tuned(options, start) + ".toml");
+    const SceneFinder finder(common.scenes_dirs);
+    // Nothing but truths, and a file of a method.
+    fmt::print("{}\n", describe_disk_use({disk_use(experiment, finder, false).cache, 0}, options.run.cache_dir,
+                                         std::filesystem::absolute(options.output).parent_path()));
+    std::fflush(stdout);
 
-    const TuningViews views(experiment, options.plane, options.limited, options.hold_out,
-                            SceneFinder(common.scenes_dirs), options.run);
+    const TuningViews views(experiment, options.plane, options.limited, options.hold_out, finder, options.run);
     int trials = 0;
     const TuningResult result = tune(start, parameters, options.settings, [&](const Method& method) {
         if (options.run.stop->load()) throw ConfigError("interrupted: nothing was written; truths are kept");
@@ -117,25 +134,25 @@ int run(TuneCommandOptions options, const CommonOptions& common) {
                     values += fmt::format("{} = {}  ", free.name, print_parameter(parameter));
             }
         }
-        fmt::print("{:4}  {}RMSE {:.5g}, {:.3g} ms\n", ++trials, values, cost.error, cost.milliseconds);
+        fmt::print("{:4}  {}{}, {:.3g} ms\n", ++trials, values,
+                   cost.told() ? fmt::format("RMSE {:.5g}", cost.error) : "refused, " + cost.refusal,
+                   cost.milliseconds);
         std::fflush(stdout);
         return cost;
     });
 
     Method best = result.best.method;
-    best.name = options.name.empty() ? start.name + "_tuned" : options.name;
-    std::vector<ViewCost> before, after;
+    best.name = name_of_tuned(options, start);
     for (const bool held_out : {false, true}) {
-        const std::vector<ViewCost> old_costs = views.costs(start, held_out), new_costs = views.costs(best, held_out);
-        fmt::print("\n{}{}: {}\n", print_views(old_costs, new_costs), held_out ? "held out" : "training",
-                   print_ratio(old_costs, new_costs));
+        const std::vector<std::vector<ViewCost>> costs = views.costs({start, best}, held_out);
+        fmt::print("\n{}{}: {}\n", print_views(costs[0], costs[1]), held_out ? "held out" : "training",
+                   print_ratio(costs[0], costs[1]));
     }
     if (!result.best.within_budget)
         fmt::print("no combination keeps the budget of {} ms; this is the fastest\n", options.settings.budget);
     fmt::print("\n");
     for (const MethodDifference& difference : diff_methods(start, best))
         fmt::print("{}: {} -> {}\n", difference.parameter, difference.first, difference.second);
-    if (options.output.empty()) options.output = std::filesystem::path("out") / (best.name + ".toml");
     write_text_atomically(options.output, fmt::format("# {} tuned on {} for the plane {}: {} trials.\n{}", start.name,
                                                       options.experiment.string(), options.plane, result.trials.size(),
                                                       print_method(best)));

@@ -77,6 +77,12 @@ public:
 
     TuningResult run(const Method& start) {
         result_.start = result_.best = trial(start);
+        if (!result_.start.cost.told()) {
+            throw ConfigError(fmt::format(
+                "nothing can be tuned, because the error of '{}' itself cannot be told: {}; raise 'samples' in "
+                "the experiment's [reference]",
+                start.name, result_.start.cost.refusal));
+        }
         std::vector<SearchRange> ranges;
         for (const FreeParameter& parameter : parameters_) ranges.emplace_back(parameter);
         for (int pass = 0; pass < settings_.passes; ++pass) {
@@ -112,7 +118,8 @@ private:
         if (is_better(tried, result_.best)) result_.best = tried;
     }
 
-    bool is_better(const TuningTrial& a, const TuningTrial& b) const {
+    static bool is_better(const TuningTrial& a, const TuningTrial& b) {
+        if (!a.cost.told()) return false;
         if (a.within_budget != b.within_budget) return a.within_budget;
         return a.within_budget ? a.cost.error < b.cost.error : a.cost.milliseconds < b.cost.milliseconds;
     }

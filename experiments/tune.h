@@ -31,6 +31,9 @@ FreeParameter parse_free_parameter(const std::string& text, const Method& method
 struct TuningCost {
     double error = 0.0;
     double milliseconds = 0.0;
+    std::string refusal = {};  // why the error cannot be told: the truth is too noisy; empty where it can
+
+    bool told() const { return refusal.empty(); }
 };
 
 struct TuningSettings {
@@ -51,8 +54,9 @@ struct TuningResult {
 };
 
 // `evaluate` is called once per combination of values. The start counts among the candidates, so that the best is never
-// worse on the same views; where nothing keeps the budget the fastest trial is the best. Throws ConfigError for
-// settings that make no sense, and what `evaluate` throws.
+// worse on the same views; where nothing keeps the budget the fastest trial is the best. A trial whose error cannot be
+// told is never the best: an error that is lost in the truth's noise would look smaller than any. Throws ConfigError
+// for settings that make no sense, and where the start's own error cannot be told; and what `evaluate` throws.
 TuningResult tune(const Method& start, const std::vector<FreeParameter>& parameters, const TuningSettings& settings,
                   const std::function<TuningCost(const Method&)>& evaluate);
 

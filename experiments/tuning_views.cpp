@@ -7,6 +7,7 @@
 
 #include "experiments/method_timing.h"
 #include "experiments/reference_renderer.h"
+#include "experiments/row_measurement.h"
 #include "experiments/settling.h"
 #include "experiments/view_truths.h"
 #include "metrics/comparison.h"
@@ -16,15 +17,16 @@
 namespace plumb {
 namespace {
 
-double error_of(const Image& image, const Truth& truth, const std::string& plane) {
+TuningCost error_of(const Image& image, const Truth& truth, const std::string& plane, double most_noise) {
+    if (!truth.frame->has("half_a." + plane)) return {pixel_errors(image, truth.frame->plane(plane), 1.0).rmse, 0.0};
     Frame test(image.width(), image.height());
     test.set(plane, image);
-    if (truth.frame->has("half_a." + plane)) {
-        ReferencedErrorSettings settings;
-        settings.bootstrap.resamples = 40;  // nobody looks at the interval
-        return std::sqrt(std::max(0.0, referenced_error(test, *truth.frame, plane, truth.samples, settings).mse));
-    }
-    return pixel_errors(image, truth.frame->plane(plane), 1.0).rmse;
+    ReferencedErrorSettings settings;
+    settings.noise_limit = most_noise;
+    settings.bootstrap.resamples = 100;  // of the interval only whether it excludes zero is asked
+    const ReferencedError error = referenced_error(test, *truth.frame, plane, truth.samples, settings);
+    if (!error.trustworthy) return {0.0, 0.0, refusal_of(error)};
+    return {std::sqrt(error.mse), 0.0};
 }
 
 }  // namespace
@@ -99,42 +101,56 @@ TuningViews::TuningViews(const Experiment& experiment, const std::string& plane,
 
 TuningViews::~TuningViews() = default;
 
-std::vector<ViewCost> TuningViews::costs(const Method& method, bool held_out) const {
+std::vector<std::vector<ViewCost>> TuningViews::costs(const std::vector<Method>& methods, bool held_out) const {
     const Experiment& experiment = implementation_->experiment;
-    std::vector<ViewCost> costs;
+    const std::string& plane = implementation_->plane;
+    std::vector<std::vector<ViewCost>> costs(methods.size());
     for (const std::unique_ptr<Implementation::SceneViews>& scene : implementation_->scenes) {
         if (std::ranges::none_of(scene->views, [&](const auto& view) { return view.name.held_out == held_out; }))
             continue;
-        const Quantities quantities = quantities_of(experiment, *scene->entry, implementation_->plane);
-        const Method in_scene = method_in_scene(method, *scene->entry, experiment.file.string());
-        Pipeline pipeline(*implementation_->context, scene->scene, in_scene, quantities, experiment.width,
-                          experiment.height);
+        const Quantities quantities = quantities_of(experiment, *scene->entry, plane);
+        std::vector<std::unique_ptr<Pipeline>> pipelines;
+        std::vector<Pipeline*> in_turn;
+        std::vector<int> frames;
+        for (const Method& method : methods) {
+            const Method in_scene = method_in_scene(method, *scene->entry, experiment.file.string());
+            pipelines.push_back(std::make_unique<Pipeline>(*implementation_->context, scene->scene, in_scene,
+                                                           quantities, experiment.width, experiment.height));
+            in_turn.push_back(pipelines.back().get());
+            frames.push_back(frames_to_settle(in_scene));
+        }
         for (const Implementation::SceneViews::TruthOfView& view : scene->views) {
             if (view.name.held_out != held_out) continue;
             const View camera(scene->scene.camera(view.name.view), experiment.width, experiment.height);
             const Frame* truth = &view.truths.full.frame;
-            for (int frame = 1; frame < frames_to_settle(in_scene); ++frame) pipeline.time_passes(camera, truth);
-            const Frame image = pipeline.render(camera, nullptr, truth).frame;
-            const Timing timing = time_interleaved({&pipeline}, camera, truth, experiment.timing).front();
-            costs.push_back({view.name,
-                             {error_of(image.plane(implementation_->plane), implementation_->choose(view.truths),
-                                       implementation_->plane),
-                              timing.median}});
+            for (std::size_t i = 0; i < methods.size(); ++i) {
+                for (int frame = 1; frame < frames[i]; ++frame) pipelines[i]->time_passes(camera, truth);
+                const Frame image = pipelines[i]->render(camera, nullptr, truth).frame;
+                costs[i].push_back({view.name, error_of(image.plane(plane), implementation_->choose(view.truths), plane,
+                                                        experiment.reference.most_noise)});
+            }
+            const std::vector<Timing> timings = time_interleaved(in_turn, camera, truth, experiment.timing);
+            for (std::size_t i = 0; i < methods.size(); ++i) costs[i].back().cost.milliseconds = timings[i].median;
         }
     }
     return costs;
 }
 
-TuningCost TuningViews::training_cost(const Method& method) const { return mean_cost(costs(method, false)); }
+TuningCost TuningViews::training_cost(const Method& method) const { return mean_cost(costs({method}, false).front()); }
 
 TuningCost mean_cost(const std::vector<ViewCost>& costs) {
+    TuningCost mean;
     double error = 0.0, milliseconds = 0.0;
     for (const ViewCost& cost : costs) {
+        if (!cost.cost.told() && mean.told())
+            mean.refusal = fmt::format("{} / {}: {}", cost.view.scene, cost.view.view, cost.cost.refusal);
         error += std::log(cost.cost.error);
         milliseconds += std::log(cost.cost.milliseconds);
     }
     const double count = static_cast<double>(costs.size());
-    return {std::exp(error / count), std::exp(milliseconds / count)};
+    mean.milliseconds = std::exp(milliseconds / count);
+    if (mean.told()) mean.error = std::exp(error / count);
+    return mean;
 }
 
 }  // namespace plumb

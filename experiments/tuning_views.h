@@ -19,7 +19,7 @@ struct TuningView {
 
 struct ViewCost {
     TuningView view;
-    TuningCost cost;  // RMSE, free of the truth's noise where it can be
+    TuningCost cost;  // RMSE, free of the truth's noise where it can be; refused where that noise is too near to it
 };
 
 class TuningViews {
@@ -32,8 +32,8 @@ public:
                 const SceneFinder& finder, const RunOptions& options);
     ~TuningViews();
 
-    // Of the method as it runs in each scene; every view, held out or not, as asked for.
-    std::vector<ViewCost> costs(const Method& method, bool held_out) const;
+    // Of each method as it runs in each scene, timed in turn; every view, held out or not, as asked for.
+    std::vector<std::vector<ViewCost>> costs(const std::vector<Method>& methods, bool held_out) const;
     // Geometric means over the training views.
     TuningCost training_cost(const Method& method) const;
 
@@ -42,7 +42,7 @@ private:
     std::unique_ptr<Implementation> implementation_;
 };
 
-// Geometric means.
+// Geometric means; refused where one is.
 TuningCost mean_cost(const std::vector<ViewCost>& costs);
 
 }  // namespace plumb

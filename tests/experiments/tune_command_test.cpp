@@ -49,13 +49,25 @@ protected:
 TEST_F(TuneCommand, WritesABetterMethodAndJudgesItOnHeldOutViews) {
     const ProgramRun run = tune("ao.intensity=0.25..1");
     ASSERT_EQ(run.exit_code, 0) << run.output;
-    EXPECT_THAT(run.output, AllOf(HasSubstr("training"), HasSubstr("held out"), HasSubstr("ao.intensity: 1")));
+    EXPECT_THAT(run.output, AllOf(HasSubstr("Disk: at most"), HasSubstr("training"), HasSubstr("held out"),
+                                  HasSubstr("ao.intensity: 1")));
     const Method start = load_method("two_layers"), tuned = load_method((folder_.path / "mine.toml").string());
     EXPECT_EQ(tuned.name, "mine");
     EXPECT_LT(tuned.ao.intensity, start.ao.intensity) << run.output;
     for (const MethodDifference& difference : diff_methods(start, tuned)) {
         EXPECT_EQ(difference.parameter, "ao.intensity") << "nothing else was free";
     }
+}
+
+TEST_F(TuneCommand, RefusesErrorsThatTheTruthIsTooNoisyFor) {
+    std::string noisy = experiment;
+    noisy.replace(noisy.find("samples = 64\nmost_noise = 10.0"), 30, "samples = 2\nmost_noise = 0.001");
+    std::ofstream(folder_.path / "thumbnail.toml") << noisy;
+    const ProgramRun run = tune("ao.intensity=0.25..1");
+    EXPECT_EQ(run.exit_code, 2) << run.output;
+    EXPECT_THAT(run.output, AllOf(HasSubstr("refused, cornell / front: not measured"), HasSubstr("samples per pixel"),
+                                  HasSubstr("nothing can be tuned")));
+    EXPECT_FALSE(std::filesystem::exists(folder_.path / "mine.toml"));
 }
 
 TEST_F(TuneCommand, RefusesWhatTheSceneOverrides) {

@@ -1,5 +1,6 @@
 #include "experiments/tune.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gmock/gmock.h>
@@ -47,6 +48,31 @@ TEST(Tune, WhereNothingKeepsTheBudgetTheFastestIsTheBestAndSaysSo) {
     const TuningResult result = tune(start(), parameters(), {.steps = 3, .passes = 2, .budget = 1.0}, bowl);
     EXPECT_FALSE(result.best.within_budget);
     EXPECT_EQ(result.best.method.ao.samples, 4);
+}
+
+TEST(Tune, AnErrorThatIsLostInTheTruthsNoiseNeverWins) {
+    const auto lost_at_the_bottom = [](const Method& method) {
+        TuningCost cost = bowl(method);
+        if (cost.error < 0.15) cost.error = 0.0, cost.refusal = "too noisy";
+        return cost;
+    };
+    const TuningResult result =
+        tune(start(), parameters(), {.steps = 7, .passes = 3, .budget = 0.0}, lost_at_the_bottom);
+    EXPECT_TRUE(result.best.cost.told());
+    EXPECT_GE(result.best.cost.error, 0.15);
+    EXPECT_TRUE(std::ranges::any_of(result.trials, [](const TuningTrial& trial) { return !trial.cost.told(); }))
+        << "or else nothing was tested";
+    // Neither for being fast where nothing keeps the budget.
+    const auto lost_where_fast = [](const Method& method) {
+        TuningCost cost = bowl(method);
+        if (method.ao.samples < 8) cost.refusal = "too noisy";
+        return cost;
+    };
+    const TuningResult slow = tune(start(), parameters(), {.steps = 7, .passes = 1, .budget = 1.0}, lost_where_fast);
+    EXPECT_TRUE(slow.best.cost.told());
+    const auto lost = [](const Method&) { return TuningCost{0.0, 1.0, "too noisy"}; };
+    EXPECT_THAT(message_of<ConfigError>([&] { tune(start(), parameters(), {}, lost); }),
+                testing::AllOf(HasSubstr("too noisy"), HasSubstr("[reference]")));
 }
 
 TEST(Tune, TriesEachCombinationOnceAndChoicesByName) {
