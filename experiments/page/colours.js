@@ -28,6 +28,17 @@ const colourTables = {
 };
 const gradientOf = (map) => `linear-gradient(to right, ${data.colour_maps[map].join(", ")})`;
 
+// Nodes that tell what an error map's colours mean: the words, the ramp, and its ends.
+function errorLegend(words, map, low, high) {
+  const ramp = element("div", { className: "ramp" });
+  ramp.style.background = gradientOf(map);
+  const ends = [short(low), short((low + high) / 2), `${short(high)} and more`];
+  return [
+    element("div", { textContent: `Error: ${words}` }), ramp,
+    element("div", { className: "ends" }, ...ends.map((text) => element("span", { textContent: text })))
+  ];
+}
+
 const notANumber = [255, 0, 255];  // magenta, which no map contains
 
 // What 8 bits a value of the plane becomes; each kind of plane has its own way, as the PNG files have.

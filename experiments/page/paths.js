@@ -63,9 +63,9 @@ function drawPaths() {
     state.shown = new Set(state.path.strips.filter((strip) => strip.kind === "truth" || methods.includes(strip.label)));
     scrub.box.max = lengthOf() - 1;
     const exposure = state.path.exposure_note ? `${state.path.exposure_note}; ` : "";
-    byId("path-note").textContent = `${exposure}error maps: |difference| averaged over channels, from 0 (dark) to ` +
-        `${short(state.path.error_scale)} and more (bright). Frames are JPEG pictures to look at; the figures come ` +
-        "from the float frames.";
+    byId("path-legend").replaceChildren(...errorLegend(errorKinds.absolute.words, "error", 0, state.path.error_scale));
+    byId("path-note").textContent =
+        `${exposure}frames are JPEG pictures to look at; the figures come from the float frames.`;
     arrange();
     followed();
     show(Math.min(state.frame, lengthOf() - 1));

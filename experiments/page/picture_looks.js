@@ -46,12 +46,8 @@ class PictureLooks {
 
   drawLegend(set) {
     const kind = errorKinds[this.errorKind.value], scale = this.scaleOf(set), low = kind.signed ? -scale : 0;
-    const ramp = element("div", { className: "ramp" });
-    ramp.style.background = gradientOf(kind.signed ? "signed" : "error");
-    const ends = [short(low), short((low + scale) / 2), `${short(scale)} and more`];
     const shown = `Pictures: exposure ${this.stopsOf(set).toFixed(1)} stops, then the sRGB curve. `;
-    this.legend.replaceChildren(element("div", { textContent: `Error: ${kind.words}` }), ramp,
-        element("div", { className: "ends" }, ...ends.map((text) => element("span", { textContent: text }))),
+    this.legend.replaceChildren(...errorLegend(kind.words, kind.signed ? "signed" : "error", low, scale),
         element("div", { textContent: `${set.display === "radiance" ? shown : ""}Magenta is no number.` }));
   }
 }
