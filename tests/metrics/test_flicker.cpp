@@ -1,5 +1,6 @@
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include <gmock/gmock.h>
 
@@ -44,6 +45,31 @@ TEST(Flicker, OfAMethodInHalvesIsThatOfEachHalfAgainstTheTruthsOwn) {
     EXPECT_NEAR(result.method_warping, std::sqrt(3.0 * 5.0), 4 * float32);
     EXPECT_NEAR(result.truth_warping, std::sqrt(1.0 * 2.0), 4 * float32);
     EXPECT_NEAR(result.noise, 0.5 * (3.0 - 2.0), 4 * float32);
+}
+
+// NumPy 1.24.2 and SciPy 1.10.1 (Debian 12):
+//
+//   import numpy as np
+//   from scipy.ndimage import map_coordinates
+//   f = np.float32
+//   y, x = np.mgrid[0:8, 0:16].astype(float)
+//   truth = lambda s: 0.5 + 0.03 * s
+//   m0, t0 = f(truth(x) + 0.2 * np.sin(0.9 * x)), f(truth(x))
+//   m1, t1 = f(truth(x + pan) + 0.25 * np.cos(0.7 * (x + pan))), f(truth(x + pan))
+//   warp = lambda a: map_coordinates(a.astype(float), [y, x + pan], order=1)
+//   rms = lambda a: np.sqrt((a[x + pan <= 15]**2).mean())
+//   rms(f(m1 - t1) - warp(f(m0 - t0))), rms(m1 - warp(m0))
+TEST(Flicker, MatchesAWarpByNumPyAndSciPy) {
+    for (const auto& [pan, rms, warping, pixels] : {std::tuple{1.5, 0.12848046278024405, 0.12848046538469718, 112u},
+                                                    {0.25, 0.13035493943368476, 0.1303549331618762, 120u}}) {
+        const Frame before = wall(0, [](double s) { return texture(s) + 0.2 * std::sin(0.9 * s); }),
+                    now = wall(pan, [](double s) { return texture(s) + 0.25 * std::cos(0.7 * s); });
+        const Flicker result =
+            flicker(before, wall(0, texture), with_motion(now, pan), with_motion(wall(pan, texture), pan), "direct");
+        EXPECT_NEAR(result.rms, rms, float32) << pan;
+        EXPECT_NEAR(result.method_warping, warping, float32) << pan;
+        EXPECT_EQ(result.pixels, pixels) << pan;
+    }
 }
 
 TEST(Flicker, WhatTheTruthItselfDoesCancels) {
