@@ -137,21 +137,25 @@ inline Visibility visibility_by_taps(const Layers& layers, const AmbientObscuran
     return result;
 }
 
+inline SpiralRequest taps_of(const AmbientObscuranceSettings& settings, double radius_pixels, Pixel pixel,
+                             const SpiralPattern& pattern = {}) {
+    return {.pixel = pixel,
+            .radius_pixels = radius_pixels,
+            .samples = settings.samples,
+            .jitter = 32768,
+            .use_mip_chain = settings.use_mip_chain,
+            .mip_offset = settings.mip_offset,
+            .minimum_distance = settings.estimator == AmbientObscuranceEstimator::g3d_demo ? 0.75 : 0.0,
+            .pattern = pattern};
+}
+
 inline Visibility ambient_visibility(const Layers& layers, const AmbientObscuranceSettings& settings,
-                                     const Quantities& quantities, Pixel pixel) {
+                                     const Quantities& quantities, Pixel pixel, const SpiralPattern& pattern = {}) {
     const double radius_pixels = radius_in_pixels(layers, settings, quantities, pixel);
     if (radius_pixels < 1.0) return {};
     Visibility result;
     const std::vector<Tap> taps =
-        spiral_taps(layers,
-                    {.pixel = pixel,
-                     .radius_pixels = radius_pixels,
-                     .samples = settings.samples,
-                     .jitter = 32768,
-                     .use_mip_chain = settings.use_mip_chain,
-                     .mip_offset = settings.mip_offset,
-                     .minimum_distance = settings.estimator == AmbientObscuranceEstimator::g3d_demo ? 0.75 : 0.0},
-                    result.ambiguous);
+        spiral_taps(layers, taps_of(settings, radius_pixels, pixel, pattern), result.ambiguous);
     return visibility_by_taps(layers, settings, quantities, pixel, taps, result);
 }
 
@@ -159,16 +163,18 @@ inline Visibility ambient_visibility(const Layers& layers, const AmbientObscuran
 // evenly.
 inline Visibility limit_of_many_taps(const Layers& layers, const AmbientObscuranceSettings& settings,
                                      const Quantities& quantities, Pixel pixel) {
-    constexpr int steps = 200;
+    constexpr int rings = 100, sectors = 200;
     const double radius_pixels = radius_in_pixels(layers, settings, quantities, pixel);
+    const SpiralRequest request = taps_of(settings, radius_pixels, pixel);
     std::vector<Tap> taps;
-    for (int i = 0; i < steps; ++i) {
-        for (int j = 0; j < steps; ++j) {
-            const double distance = radius_pixels * (i + 0.5) / steps,
-                         angle = 2.0 * std::numbers::pi * (j + 0.5) / steps;
+    for (int i = 0; i < rings; ++i) {
+        for (int j = 0; j < sectors; ++j) {
+            const double distance = std::max(request.minimum_distance, radius_pixels * (i + 0.5) / rings),
+                         angle = 2.0 * std::numbers::pi * (j + 0.5) / sectors;
             const Pixel tap{pixel.x + static_cast<int>(std::floor(distance * std::cos(angle) + 0.5)),
                             pixel.y + static_cast<int>(std::floor(distance * std::sin(angle) + 0.5))};
-            taps.push_back({tap, tap});
+            // Also of taps outside, whose source nobody looks at.
+            taps.push_back({tap, inside(layers, tap) ? source_of_tap(layers, tap, distance, request) : tap});
         }
     }
     return visibility_by_taps(layers, settings, quantities, pixel, taps);

@@ -10,7 +10,8 @@
 
 namespace plumb {
 
-// Creates the planes depth, normal and direct of two layers. Normals of `layers` become what their encoding leaves.
+// Creates the planes depth, normal and direct of two layers, and camera_position where there are positions. Normals of
+// `layers` become what their encoding leaves.
 inline void upload_layers(PlaneTextures& planes, counterpart::Layers& layers) {
     const int width = layers.width(), height = layers.height();
     GlTexture& depth = planes.create("depth", GL_R32F, 2);
@@ -41,6 +42,9 @@ inline void upload_layers(PlaneTextures& planes, counterpart::Layers& layers) {
         });
         upload(depth, layer, depth_image);
         upload(direct, layer, layers.radiance[layer]);
+        if (layers.position.empty()) continue;
+        if (layer == 0) planes.create("camera_position", GL_RGBA32F, 2);
+        upload(planes.get("camera_position"), layer, layers.position[layer]);
     }
 }
 

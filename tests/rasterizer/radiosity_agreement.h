@@ -19,14 +19,14 @@ inline Method unblurred(RadiositySettings radiosity) {
 // rounding leaves open.
 inline double expect_agreement(const counterpart::Layers& layers, const RadiositySettings& settings,
                                const Image& irradiance, const Image& confidence, Falloff falloff = Falloff::hard,
-                               counterpart::GatheringLayers of = {}) {
+                               counterpart::GatheringLayers of = {}, const counterpart::SpiralPattern& pattern = {}) {
     const int width = layers.width(), height = layers.height();
     const int confidence_channel = confidence.channels() - 1;
     int ambiguous = 0, wrong = 0;
     for (int y = 0; y < height; ++y) {
         for (int x = 0; x < width; ++x) {
             const counterpart::Irradiance expected =
-                counterpart::gathered_irradiance(layers, settings, falloff, {x, y}, of);
+                counterpart::gathered_irradiance(layers, settings, falloff, {x, y}, of, pattern);
             ambiguous += expected.ambiguous;
             if (expected.ambiguous) continue;
             const int row = height - 1 - y;

@@ -13,9 +13,9 @@ struct Irradiance {
     bool ambiguous = false;
 };
 
-inline std::uint32_t radiosity_jitter(Pixel pixel) {
-    std::uint32_t h =
-        static_cast<std::uint32_t>(pixel.x) * 0x9E3779B1u ^ static_cast<std::uint32_t>(pixel.y) * 0x85EBCA77u;
+inline std::uint32_t radiosity_jitter(Pixel pixel, const SpiralPattern& pattern = {}) {
+    std::uint32_t h = static_cast<std::uint32_t>(pixel.x + pattern.shift.x) * 0x9E3779B1u ^
+                      static_cast<std::uint32_t>(pixel.y + pattern.shift.y) * 0x85EBCA77u;
     h = (h ^ (h >> 15)) * 0xC2B2AE3Du;
     h = (h ^ (h >> 13)) * 0x27D4EB2Fu;
     return 6554u + static_cast<std::uint32_t>(static_cast<std::uint64_t>(h >> 16) * 52428u / 65536u);  // 0.1 to 0.9
@@ -60,7 +60,7 @@ inline Received received_from(const Layers& layers, const RadiositySettings& set
 }
 
 inline Irradiance gathered_irradiance(const Layers& layers, const RadiositySettings& settings, Falloff falloff,
-                                      Pixel pixel, GatheringLayers of = {}) {
+                                      Pixel pixel, GatheringLayers of = {}, const SpiralPattern& pattern = {}) {
     Irradiance result;
     const double depth = depth_at(layers, of.receiver, pixel);
     if (depth == 0.0) return result;
@@ -70,10 +70,11 @@ inline Irradiance gathered_irradiance(const Layers& layers, const RadiositySetti
                     {.pixel = pixel,
                      .radius_pixels = settings.spread_pixels > 0 ? settings.spread_pixels : projected,
                      .samples = settings.samples,
-                     .jitter = radiosity_jitter(pixel),
+                     .jitter = radiosity_jitter(pixel, pattern),
                      .use_mip_chain = settings.use_mip_chain,
                      .mip_offset = settings.mip_offset,
-                     .minimum_mip_level = settings.minimum_mip_level},
+                     .minimum_mip_level = settings.minimum_mip_level,
+                     .pattern = pattern},
                     result.ambiguous);
     const bool adds = settings.estimator == RadiosityEstimator::nielsen2015;
     glm::dvec3 sum{0.0};

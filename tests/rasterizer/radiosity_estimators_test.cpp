@@ -69,15 +69,15 @@ TEST_P(RadiosityEstimatorsTest, NielsenCountsBothLayersAndMaraTheStrongerOne) {
 // What the estimators tend to with more and more taps, divided by all of them: an integral over the disc, here a fine
 // grid in radius and angle. In alpha the confidence.
 glm::dvec4 limit_of(const counterpart::Layers& layers, const RadiositySettings& settings, counterpart::Pixel pixel) {
-    constexpr int steps = 200;
+    constexpr int rings = 100, sectors = 200;
     const double radius = layers.view.pixels_per_metre() * settings.radius / counterpart::depth_at(layers, 0, pixel);
     const bool adds = settings.estimator == nielsen;
     glm::dvec3 sum{0.0};
     double hits = 0.0;
     bool ignored = false;
-    for (int i = 0; i < steps; ++i) {
-        for (int j = 0; j < steps; ++j) {
-            const double distance = radius * (i + 0.5) / steps, angle = 2.0 * std::numbers::pi * (j + 0.5) / steps;
+    for (int i = 0; i < rings; ++i) {
+        for (int j = 0; j < sectors; ++j) {
+            const double distance = radius * (i + 0.5) / rings, angle = 2.0 * std::numbers::pi * (j + 0.5) / sectors;
             const counterpart::Pixel tap{pixel.x + static_cast<int>(std::floor(distance * std::cos(angle) + 0.5)),
                                          pixel.y + static_cast<int>(std::floor(distance * std::sin(angle) + 0.5))};
             if (!counterpart::inside(layers, tap)) continue;
@@ -97,59 +97,85 @@ glm::dvec4 limit_of(const counterpart::Layers& layers, const RadiositySettings& 
             hits += hit;
         }
     }
-    const double taps = static_cast<double>(steps) * steps * (adds ? settings.layers : 1);
+    const double taps = static_cast<double>(rings) * sectors * (adds ? settings.layers : 1);
     return {2.0 * std::numbers::pi / taps * sum, hits / taps};
 }
 
-// A corner of floor and wall, and a board before the wall, so that both layers hold something.
-counterpart::Layers corner() {
-    return layers_of_patches(slanted_view(120, 90), {{{-4.0f, -1.0f, -7.0f}, {8.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 8.0f}},
-                                                     {{-4.0f, -1.0f, -6.0f}, {8.0f, 0.0f, 0.0f}, {0.0f, 6.0f, 0.0f}},
-                                                     {{-1.0f, -0.6f, -5.0f}, {2.0f, 0.0f, 0.0f}, {0.0f, 1.2f, 0.3f}}});
+// Floor, ceiling, walls and end of a corridor, which light each other, with a shelf across it, so that both layers hold
+// something.
+counterpart::Layers corridor() {
+    return layers_of_patches(slanted_view(60, 45), {{{-1.0f, -1.0f, -7.0f}, {2.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 6.5f}},
+                                                    {{-1.0f, 1.0f, -7.0f}, {2.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 6.5f}},
+                                                    {{-1.0f, -1.0f, -7.0f}, {0.0f, 2.0f, 0.0f}, {0.0f, 0.0f, 6.5f}},
+                                                    {{1.0f, -1.0f, -7.0f}, {0.0f, 2.0f, 0.0f}, {0.0f, 0.0f, 6.5f}},
+                                                    {{-1.0f, -1.0f, -5.0f}, {2.0f, 0.0f, 0.0f}, {0.0f, 2.0f, 0.0f}},
+                                                    {{-1.0f, -0.4f, -4.0f}, {2.0f, 0.0f, 0.0f}, {0.0f, 0.1f, 0.8f}}});
 }
 
 TEST_P(RadiosityEstimatorsTest, ConvergeToTheirIntegralOverTheDisc) {
-    const counterpart::Layers layers = corner();
+    const counterpart::Layers layers = corridor();
     for (const RadiosityEstimator estimator : {RadiosityEstimator::mara2016, nielsen}) {
-        SCOPED_TRACE(to_string(estimator));
-        // Divided by the hits it would be a quotient of two such integrals, which says nothing where hardly a tap hits.
-        RadiositySettings settings{
-            .estimator = estimator, .normalisation = RadiosityNormalisation::samples, .use_mip_chain = false};
-        const auto pixels = [&](const auto& look_at) {
-            for (int y = 5; y < 90; y += 20) {
-                for (int x = 5; x < 120; x += 15) {
-                    const counterpart::Pixel pixel{x, y};
-                    if (counterpart::depth_at(layers, 0, pixel) != 0.0) look_at(pixel);
-                }
+        RadiositySettings settings{.estimator = estimator, .radius = 2.0f, .use_mip_chain = false};
+        std::vector<std::pair<counterpart::Pixel, glm::dvec4>> limits;
+        for (int y = 4; y < 45; y += 9) {
+            for (int x = 4; x < 60; x += 11) {
+                const counterpart::Pixel pixel{x, y};
+                if (counterpart::depth_at(layers, 0, pixel) != 0.0)
+                    limits.push_back({pixel, limit_of(layers, settings, pixel)});
             }
-        };
-        std::vector<glm::dvec4> limits;
-        pixels([&](counterpart::Pixel pixel) { limits.push_back(limit_of(layers, settings, pixel)); });
-        const auto mean_error = [&](int samples, int seeds = 1) {
-            settings.samples = samples;
-            ScreenSpaceRun run(context(), layers, unblurred(settings), gathered);
-            const Image image = mean_over_seeds(run, "radiosity", 4, seeds);
-            glm::dvec2 error{0.0}, reference{0.0};
-            auto expected = limits.begin();
-            pixels([&](counterpart::Pixel pixel) {
-                const glm::dvec2 is(image.at(pixel.x, 89 - pixel.y, 0), image.at(pixel.x, 89 - pixel.y, 3));
-                error += glm::abs(is - glm::dvec2(expected->x, expected->w));
-                reference += glm::dvec2(expected->x, expected->w);
-                ++expected;
-            });
-            EXPECT_GT(reference.x, 0.5) << "of 40 pixels: wall, floor and board light each other";
-            return error / reference;
-        };
-        const glm::dvec2 few = mean_error(16), many = mean_error(1000), thousands = mean_error(1000, 4);
-        for (const int i : {0, 1}) {
-            SCOPED_TRACE(i == 0 ? "irradiance" : "confidence");
-            // N points spread evenly over a disc miss its edges by some N^(-3/4), 0.6 % of 1000, and what sends is a
-            // small part of the disc.
-            EXPECT_LT(many[i], 0.03) << "relative error of 1000 taps; of 16: " << few[i];
-            EXPECT_LT(many[i], few[i] / 5.0) << few[i];
-            // What is left is that of the grid, whose cells are half a pixel wide at the disc's edge.
-            EXPECT_LT(thousands[i], 0.01) << "relative error of 4 seeds of 1000 taps; of one: " << many[i];
-            EXPECT_LT(thousands[i], many[i]);
+        }
+        for (const RadiosityNormalisation normalisation :
+             {RadiosityNormalisation::samples, RadiosityNormalisation::hits}) {
+            SCOPED_TRACE(testing::Message() << to_string(estimator) << ", divided by "
+                                            << (normalisation == RadiosityNormalisation::hits ? "hits" : "samples"));
+            settings.normalisation = normalisation;
+            const bool by_hits = normalisation == RadiosityNormalisation::hits;
+            const auto mean_error = [&](int samples, int seeds = 1) {
+                settings.samples = samples;
+                ScreenSpaceRun run(context(), layers, unblurred(settings), gathered);
+                const Image image = mean_over_seeds(run, "radiosity", 4, seeds);
+                glm::dvec2 error{0.0}, reference{0.0};
+                int pixels = 0;
+                for (const auto& [pixel, limit] : limits) {
+                    // The quotient of two integrals says nothing where hardly a tap hits.
+                    if (by_hits && limit.w < 0.1) continue;
+                    const glm::dvec2 expected(by_hits ? limit.x / limit.w : limit.x, limit.w);
+                    error += glm::abs(
+                        glm::dvec2(image.at(pixel.x, 44 - pixel.y, 0), image.at(pixel.x, 44 - pixel.y, 3)) - expected);
+                    reference += expected;
+                    ++pixels;
+                }
+                EXPECT_GT(pixels, 10) << "wall, floor and board light each other";
+                EXPECT_GT(reference.x, 0.5);
+                return error / reference;
+            };
+            const glm::dvec2 few = mean_error(16), many = mean_error(1000), thousands = mean_error(1000, 4);
+            for (const int i : {0, 1}) {
+                SCOPED_TRACE(i == 0 ? "irradiance" : "confidence");
+                // N points spread evenly over a disc miss its edges by some N^(-3/4), 0.6 % of 1000, and what sends is
+                // a small part of the disc.
+                EXPECT_LT(many[i], 0.03) << "relative error of 1000 taps; of 16: " << few[i];
+                EXPECT_LT(many[i], few[i] / 4.0) << few[i];
+                // What is left is that of the grid, whose cells are a fraction of a pixel wide at the disc's edge.
+                EXPECT_LT(thousands[i], 0.01) << "relative error of 4 seeds of 1000 taps; of one: " << many[i];
+                EXPECT_LT(thousands[i], many[i]);
+            }
+        }
+    }
+}
+
+TEST_P(RadiosityEstimatorsTest, SeedsMoveAndFramesTurnTheTapsAsTheFormulaSays) {
+    const counterpart::Layers noise = counterpart::random_layers(slanted_view(61, 42), 5);
+    for (const bool vary : {true, false}) {
+        RadiositySettings settings{.samples = 9};
+        settings.temporal = {.alpha = 0.9f, .vary_taps = vary};
+        ScreenSpaceRun run(context(), noise, unblurred(settings), {.planes = {"radiosity.of_frame"}});
+        for (const auto& [seed, frame] : {std::pair{0u, 1}, std::pair{0u, 13}, std::pair{77u, 2}}) {
+            SCOPED_TRACE(testing::Message() << "seed " << seed << ", frame " << frame << ", varying " << vary);
+            const counterpart::SpiralPattern pattern{pattern_shift(seed),
+                                                     vary ? static_cast<std::uint32_t>(frame) : 0u};
+            const Image image = run.render("radiosity.of_frame", 4, 0, 0, seed, frame);
+            EXPECT_LT(expect_agreement(run.layers(), settings, image, image, Falloff::hard, {}, pattern), 0.05);
         }
     }
 }

@@ -25,6 +25,8 @@ namespace plumb::counterpart {
 struct Layers {
     View view;
     std::vector<Image> depth, normal, radiance;
+    std::vector<Image> position =
+        {};  // camera space; where there is none, points are those of depth at pixels' centres
     int width() const { return view.width(); }
     int height() const { return view.height(); }
 };
@@ -46,6 +48,7 @@ inline glm::dvec3 vector_at(const Layers& layers, const Image& image, Pixel p) {
     return {values[0], values[1], values[2]};
 }
 inline glm::dvec3 point_at(const Layers& layers, int layer, Pixel p) {
+    if (!layers.position.empty()) return vector_at(layers, layers.position[layer], p);
     const glm::dvec2 tan_half(layers.view.tan_half());
     const double u = 2.0 * (p.x + 0.5) / layers.width() - 1.0;
     const double v = 2.0 * (p.y + 0.5) / layers.height() - 1.0;
@@ -63,6 +66,12 @@ struct Tap {
     Pixel source;  // the pixel of level 0 that is read
 };
 
+// Which pattern of taps: moved by a seed, and turned from frame to frame where taps vary in time.
+struct SpiralPattern {
+    glm::ivec2 shift{0};
+    std::uint32_t frame = 0;  // since the last cut; 0 where taps do not vary
+};
+
 struct SpiralRequest {
     Pixel pixel;
     double radius_pixels;
@@ -72,22 +81,35 @@ struct SpiralRequest {
     int mip_offset;
     int minimum_mip_level = 0;
     double minimum_distance = 0.0;
+    SpiralPattern pattern = {};
 };
+
+// The pixel of level 0 that a tap `distance` pixels away reads.
+inline Pixel source_of_tap(const Layers& layers, Pixel tap, double distance, const SpiralRequest& request) {
+    const int smaller_side = std::min(layers.width(), layers.height());
+    const int coarsest =
+        request.use_mip_chain ? std::min(5, static_cast<int>(std::bit_width(unsigned(smaller_side))) - 1) : 0;
+    const int level_wanted = distance < 1.0 ? 0 : static_cast<int>(std::floor(std::log2(distance)));
+    const int level =
+        std::clamp(level_wanted - request.mip_offset, std::min(request.minimum_mip_level, coarsest), coarsest);
+    const Pixel texel{std::min(tap.x >> level, (layers.width() >> level) - 1),
+                      std::min(tap.y >> level, (layers.height() >> level) - 1)};
+    return pixel_of_texel(texel, level);
+}
 
 // The taps of a pixel; `ambiguous` becomes true where rounding may move one of them.
 inline std::vector<Tap> spiral_taps(const Layers& layers, const SpiralRequest& request, bool& ambiguous) {
-    const std::uint32_t x = static_cast<std::uint32_t>(request.pixel.x),
-                        y = static_cast<std::uint32_t>(request.pixel.y);
+    const std::uint32_t x = static_cast<std::uint32_t>(request.pixel.x + request.pattern.shift.x),
+                        y = static_cast<std::uint32_t>(request.pixel.y + request.pattern.shift.y);
     const std::uint32_t hash = (3 * x) ^ (y + x * y);
     // 10 radians a step, and the jitter's share of tau turns, both in units of 2^-32 turns that wrap around.
     const auto spin_unit = static_cast<std::uint32_t>(std::fmod(10.0 / (2.0 * std::numbers::pi), 1.0) * 0x1p32);
     const auto jitter_unit = static_cast<std::uint32_t>(65536.0 * spiral_turns(request.samples) / request.samples);
-    const std::uint32_t turned = hash * spin_unit + request.jitter * jitter_unit;
+    // The fraction of the golden ratio, (sqrt 5 - 1) / 2, of a turn for each frame.
+    const auto frame_unit = static_cast<std::uint32_t>((std::sqrt(5.0) - 1.0) / 2.0 * 0x1p32);
+    const std::uint32_t turned = hash * spin_unit + request.jitter * jitter_unit + request.pattern.frame * frame_unit;
     const double spin = static_cast<double>(turned >> 22) / 1024.0;
 
-    const int smaller_side = std::min(layers.width(), layers.height());
-    const int coarsest =
-        request.use_mip_chain ? std::min(5, static_cast<int>(std::bit_width(unsigned(smaller_side))) - 1) : 0;
     std::vector<Tap> taps;
     for (int i = 0; i < request.samples; ++i) {
         const double alpha = (i + request.jitter / 65536.0) / request.samples;
@@ -102,12 +124,7 @@ inline std::vector<Tap> spiral_taps(const Layers& layers, const SpiralRequest& r
 
         const Pixel tap{request.pixel.x + static_cast<int>(std::floor(dx)),
                         request.pixel.y + static_cast<int>(std::floor(dy))};
-        const int level_wanted = distance < 1.0 ? 0 : static_cast<int>(std::floor(std::log2(distance)));
-        const int level =
-            std::clamp(level_wanted - request.mip_offset, std::min(request.minimum_mip_level, coarsest), coarsest);
-        const Pixel texel{std::min(tap.x >> level, (layers.width() >> level) - 1),
-                          std::min(tap.y >> level, (layers.height() >> level) - 1)};
-        taps.push_back({tap, pixel_of_texel(texel, level)});
+        taps.push_back({tap, source_of_tap(layers, tap, distance, request)});
     }
     return taps;
 }

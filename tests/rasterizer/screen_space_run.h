@@ -60,9 +60,11 @@ public:
     }
 
     // Runs all passes and returns a plane, guard band included.
-    Image render(const std::string& plane, int channels, int layer = 0, int level = 0, std::uint32_t seed = 0) {
+    Image render(const std::string& plane, int channels, int layer = 0, int level = 0, std::uint32_t seed = 0,
+                 int frame = 0) {
         context_.make_current();
-        view_uniforms_.update(layers_.view, layers_.view, method_.gbuffer.guard_band, nullptr, 0, pattern_shift(seed));
+        view_uniforms_.update(layers_.view, layers_.view, method_.gbuffer.guard_band, nullptr, frame,
+                              pattern_shift(seed));
         view_uniforms_.bind();
         for (const std::unique_ptr<Pass>& pass : passes_) {
             pass->execute({layers_.view, layers_.view, nullptr});
