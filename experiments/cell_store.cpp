@@ -1,16 +1,13 @@
 #include "experiments/cell_store.h"
 
 #include <exception>
-#include <fstream>
-#include <iterator>
 #include <system_error>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#define XXH_INLINE_ALL
-#include <xxhash.h>
 
 #include "experiments/frame_checksum.h"
+#include "experiments/program_checksum.h"
 #include "frames/exr.h"
 #include "frames/image_error.h"
 
@@ -18,17 +15,6 @@ namespace plumb {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::string hash_of(const std::string& text) {
-    const XXH128_hash_t hash = XXH3_128bits(text.data(), text.size());
-    return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
-}
-
-// Of the program that runs; where the system does not tell its file, of nothing: then each cell is its own program's.
-std::string program_checksum() {
-    std::ifstream file("/proc/self/exe", std::ios::binary);
-    return hash_of(std::string(std::istreambuf_iterator<char>(file), {}));
-}
 
 // Planes are named by their place in the cell: the same plane occurs once per method.
 std::string name_of(std::size_t index, std::string_view part = "") { return fmt::format("cell{}{}", index, part); }
@@ -64,7 +50,9 @@ PlaneImage image_of(const Json& json) {
 
 CellStore::CellStore(std::filesystem::path folder) : folder_(std::move(folder)), program_(program_checksum()) {}
 
-std::filesystem::path CellStore::file_of(const std::string& key) const { return folder_ / (hash_of(key) + ".exr"); }
+std::filesystem::path CellStore::file_of(const std::string& key) const {
+    return folder_ / (text_checksum(key) + ".exr");
+}
 
 std::optional<std::vector<PlaneImage>> CellStore::load(const std::string& key) const {
     const std::filesystem::path file = file_of(key);

@@ -43,6 +43,7 @@ RunOptions options_of_must_fail(const RunOptions& options, const MustFail& must_
     RunOptions result = options;
     result.output = options.output / "must_fail" / file_name_of(must_fail.name);
     result.write_frames = false;
+    result.experiment_text.clear();  // another experiment than the file's
     return result;
 }
 
@@ -126,6 +127,16 @@ Experiment must_fail_experiment(const Experiment& experiment, const MustFail& mu
         if (!std::ranges::all_of(scene.views, other_view)) std::erase_if(scene.views, other_view);
     }
     return result;
+}
+
+DiskUse disk_use(const CheckFile& check, const SceneFinder& finder, bool write_frames) {
+    DiskUse use = disk_use(check.experiment, finder, write_frames);
+    for (const MustFail& must_fail : check.must_fail) {
+        const Threshold& threshold = *check.find_threshold(must_fail.threshold);
+        // Its truths are the experiment's.
+        use.output += disk_use(must_fail_experiment(check.experiment, must_fail, threshold), finder, false).output;
+    }
+    return use;
 }
 
 Threshold must_fail_threshold(const MustFail& must_fail, Threshold threshold) {

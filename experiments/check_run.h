@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "experiments/check_file.h"
+#include "experiments/disk_use.h"
 #include "experiments/exit_code.h"
 #include "experiments/runner.h"
 #include "experiments/verdicts.h"
@@ -38,6 +39,9 @@ struct CheckResults {
 // run_experiment throws, and ConfigError where a threshold has no limit yet, or a cost was calibrated with another
 // workload.
 CheckResults run_check(const CheckFile& check, const SceneFinder& finder, const RunOptions& options);
+
+// At most, of the experiment and of the methods that must fail.
+DiskUse disk_use(const CheckFile& check, const SceneFinder& finder, bool write_frames);
 
 struct CalibrationOptions {
     int repetitions = 10;

@@ -1,4 +1,5 @@
 // `plumbline check`: an experiment held against thresholds.
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -11,6 +12,7 @@
 #include "experiments/check_report.h"
 #include "experiments/check_run.h"
 #include "experiments/command.h"
+#include "experiments/disk_use.h"
 #include "experiments/exit_code.h"
 #include "experiments/interruption.h"
 #include "experiments/view_options.h"
@@ -34,6 +36,12 @@ struct CheckCommandOptions {
     bool calibrate = false;
 };
 
+void print_disk_use(const CheckFile& file, const CommonOptions& common, const RunOptions& run) {
+    const DiskUse use = disk_use(file, SceneFinder(common.scenes_dirs), run.write_frames);
+    fmt::print("{}\n", describe_disk_use(use, run.cache_dir, run.output));
+    std::fflush(stdout);
+}
+
 int check(const CheckCommandOptions& options, const CommonOptions& common) {
     const CheckFile file = load_check_file(options.file);
     RunOptions run = options.run;
@@ -44,6 +52,8 @@ int check(const CheckCommandOptions& options, const CommonOptions& common) {
     // A check that ends early must not leave the verdict of the one before.
     for (const char* name : {"junit.xml", "check.json"}) std::filesystem::remove(run.output / name);
 
+    run.experiment_text = read_config_text(options.file);
+    print_disk_use(file, common, run);
     const CheckResults results = run_check(file, SceneFinder(common.scenes_dirs), run);
     if (results.interrupted) {
         fmt::print("\nInterrupted: nothing is decided; the truths that were finished are kept.\n");
@@ -72,6 +82,7 @@ int calibrate(const CheckCommandOptions& options, const CommonOptions& common) {
     run.command = fmt::format("plumbline check {} --calibrate", options.file.string());
     run.write_frames = false;
     require_writable_folder(run.output);
+    print_disk_use(file, common, run);
     const CalibrationResults results = run_calibration(file, SceneFinder(common.scenes_dirs), run, options.calibration);
     if (results.interrupted) {
         fmt::print("\nInterrupted: '{}' is as it was.\n", file.thresholds_file.string());

@@ -1,6 +1,9 @@
 // `plumbline reproduce`: the figures, tables and claims of the seeds, made again.
 #include <algorithm>
+#include <cstdio>
+#include <exception>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,9 +17,11 @@
 #include "experiments/exit_code.h"
 #include "experiments/interruption.h"
 #include "experiments/reproduction.h"
+#include "experiments/reproduction_key.h"
 #include "experiments/terminal_table.h"
 #include "experiments/view_options.h"
 #include "frames/atomic_file.h"
+#include "rasterizer/gl_error.h"
 
 namespace plumb {
 namespace {
@@ -24,17 +29,19 @@ namespace {
 constexpr const char* reproduce_examples = R"(Examples:
   plumbline reproduce --list                          what there is, and where in the seeds it stands
   plumbline reproduce thesis-gbuffer-time             one of them: figures, the original's numbers, claims
-  plumbline reproduce --all --scenes-dir ~/scenes     all of them, and the table of claims
+  plumbline reproduce --all --scenes-dir ~/scenes     all of them, and the table of claims; once more after a kill, it goes on
   plumbline reproduce thesis-ssao-samples --present   its files again, from the numbers of the last run
   plumbline reproduce --claims out/reproduce          the table of claims again, from finished runs
 Each writes OUTPUT/NAME/: README.md, figures as SVG, PNG and CSV, numbers.csv, claims.json, and the run's own page in
-run/. Exits with 1 where cells failed; claims that fail are a finding, not a failure.)";
+run/. What this program has measured of the same file and scenes before, without a failure, is not measured again, unless with
+--again. Exits with 1 where cells or whole experiments failed, which are listed at the end; claims that fail are a finding, not
+a failure.)";
 
 struct ReproduceCommandOptions {
     std::vector<std::string> names;
     RunOptions run;
     std::filesystem::path output = "out/reproduce", claims_folder, report;
-    bool all = false, list = false, quick = false, present = false, frames = false;
+    bool all = false, list = false, quick = false, present = false, again = false, frames = false;
 };
 
 int print_list() {
@@ -80,35 +87,87 @@ void write_claims(const std::filesystem::path& folder, const std::filesystem::pa
     fmt::print("\n{} claims: {}\n", records.size(), file.string());
 }
 
-// Exit code of one reproduction.
-int reproduce(const ReproduceCommandOptions& options, const CommonOptions& common, const std::string& name) {
-    const Reproduction reproduction = load_reproduction(name);
-    const std::filesystem::path folder = options.output / reproduction.name;
-    require_writable_folder(folder);
-    fmt::print("\n{}: {}\n{}\n", reproduction.name, reproduction.title, reproduction.question);
-    Measurements measurements;
-    if (options.present) {
-        measurements = read_measurements_json(folder / "measurements.json");
-    } else {
-        RunOptions run = options.run;
-        run.output = folder / "run";
-        run.write_frames = options.frames;
-        run.stop = &interruption_flag();
-        run.command = fmt::format("plumbline reproduce {}{}", name, options.quick ? " --quick" : "");
-        measurements = run_reproduction(reproduction, SceneFinder(common.scenes_dirs), run, options.quick);
-        if (measurements.interrupted) {
+// Reproduces one after the other.
+class Reproducer {
+public:
+    Reproducer(const ReproduceCommandOptions& options, const CommonOptions& common)
+        : options_(options), finder_(common.scenes_dirs), hashes_(finder_) {}
+
+    // Exit code of this one. Throws what loading and rendering throw.
+    int reproduce(const std::string& name) {
+        const Reproduction reproduction = load_reproduction(name);
+        const std::filesystem::path folder = options_.output / reproduction.name;
+        require_writable_folder(folder);
+        fmt::print("\n{}: {}\n{}\n", reproduction.name, reproduction.title, reproduction.question);
+        std::optional<Measurements> measurements = kept(reproduction, folder);
+        if (!measurements) measurements = measure(reproduction, name, folder);
+        if (measurements->interrupted) {
             fmt::print(
-                "\nInterrupted: no figures were made; the same command finds the references that were finished.\n");
+                "\nInterrupted: no figures were made of it; the same command goes on with the references and cells "
+                "that "
+                "were finished.\n");
             return exit_interrupted;
         }
+        const PresentedReproduction presented = present(reproduction, *measurements, folder);
+        fmt::print("{}\n", presented.text);
+        if (!measurements->cells.empty())
+            fmt::print("{:.0f} s, {} on {}\n", measurements->seconds, measurements->renderer, measurements->cpu);
+        fmt::print("{}\n", (folder / "README.md").string());
+        for (const CellFailure& failure : measurements->failures)
+            failures_.push_back({fmt::format("{}: {}", name, failure.cell), failure.message});
+        return measurements->failures.empty() ? exit_fine : exit_failed;
     }
-    const PresentedReproduction presented = present(reproduction, measurements, folder);
-    fmt::print("{}\n", presented.text);
-    if (!measurements.cells.empty())
-        fmt::print("{:.0f} s, {} on {}\n", measurements.seconds, measurements.renderer, measurements.cpu);
-    fmt::print("{}\n", (folder / "README.md").string());
-    return measurements.failures.empty() ? exit_fine : exit_failed;
-}
+
+    void add_failure(const std::string& name, const std::exception& error) {
+        fmt::print("failed: {}\n", error.what());
+        failures_.push_back({name, error.what()});
+    }
+
+    void print_failures() const {
+        if (failures_.empty()) return;
+        fmt::print("\n{} failed:\n", failures_.size());
+        for (const CellFailure& failure : failures_) fmt::print("  {}: {}\n", failure.cell, failure.message);
+    }
+
+private:
+    // What a run before this one found, where it still stands.
+    std::optional<Measurements> kept(const Reproduction& reproduction, const std::filesystem::path& folder) {
+        const std::filesystem::path file = folder / "measurements.json";
+        if (options_.present) return read_measurements_json(file);
+        if (options_.again || !std::filesystem::exists(file)) return std::nullopt;
+        try {
+            Measurements measurements = read_measurements_json(file);
+            const bool stands =
+                measurements.failures.empty() &&
+                measurements.key == measuring_key(reproduction, hashes_, options_.run.backend, options_.quick);
+            if (!stands) return std::nullopt;
+            fmt::print("measured before ({}); --again measures it anew\n", measurements.started);
+            return measurements;
+        } catch (const ConfigError&) {
+            return std::nullopt;  // a file that cannot be read is written again, which costs time only
+        }
+    }
+
+    Measurements measure(const Reproduction& reproduction, const std::string& name,
+                         const std::filesystem::path& folder) {
+        RunOptions run = options_.run;
+        run.output = folder / "run";
+        run.write_frames = options_.frames;
+        run.stop = &interruption_flag();
+        run.command = fmt::format("plumbline reproduce {}{}", name, options_.quick ? " --quick" : "");
+        const DiskUse use = disk_use(reproduction, finder_, run.write_frames, options_.quick);
+        if (use.output > 0) fmt::print("{}\n", describe_disk_use(use, run.cache_dir, run.output));
+        std::fflush(stdout);
+        Measurements measurements = run_reproduction(reproduction, finder_, run, options_.quick);
+        measurements.key = measuring_key(reproduction, hashes_, run.backend, options_.quick);
+        return measurements;
+    }
+
+    const ReproduceCommandOptions& options_;
+    SceneFinder finder_;
+    SceneHashes hashes_;
+    std::vector<CellFailure> failures_;
+};
 
 int run(const ReproduceCommandOptions& options, const CommonOptions& common) {
     if (options.list) return print_list();
@@ -119,13 +178,31 @@ int run(const ReproduceCommandOptions& options, const CommonOptions& common) {
     const std::vector<std::string> names = options.all ? reproduction_names() : options.names;
     if (names.empty()) throw ConfigError("name what to reproduce, or ask for --all or --list");
     for (const std::string& name : names) load_reproduction(name);  // a misspelt last one is told before the first runs
+    Reproducer reproducer(options, common);
     int code = exit_fine;
+    const auto attempt = [&](const std::string& name, const auto& action) {
+        try {
+            return action();
+        } catch (const GlUnavailable&) {
+            throw;  // whatever comes next would lack it too
+        } catch (const std::exception& error) {
+            reproducer.add_failure(name, error);
+            return static_cast<int>(exit_failed);
+        }
+    };
     for (const std::string& name : names) {
-        const int one = reproduce(options, common, name);
+        const int one = names.size() == 1 ? reproducer.reproduce(name)  // its error tells the exit code
+                                          : attempt(name, [&] { return reproducer.reproduce(name); });
         if (one == exit_interrupted) return one;
         code = std::max(code, one);
     }
-    if (options.all || !options.report.empty()) write_claims(options.output, options.report);
+    if (options.all || !options.report.empty()) {
+        code = std::max(code, attempt("table of claims", [&] {
+                            write_claims(options.output, options.report);
+                            return static_cast<int>(exit_fine);
+                        }));
+    }
+    reproducer.print_failures();
     return code;
 }
 
@@ -144,6 +221,7 @@ void add_reproduce_command(CLI::App& app, const CommonOptions& common, Action& a
     command->add_flag("--quick", options->quick,
                       "Try it: a quarter of the resolution, one view per scene, few samples; proves nothing");
     command->add_flag("--present", options->present, "Render nothing: figures and claims from the last run's numbers");
+    command->add_flag("--again", options->again, "Measure anew what was measured before");
     command->add_option("--claims", options->claims_folder, "Only gather FOLDER/*/claims.json into a table of claims")
         ->type_name("FOLDER");
     command->add_option("--report", options->report, "Where that table goes; CLAIMS.md in the folder by default")

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <exception>
 #include <map>
 
 #include <fmt/format.h>
@@ -170,7 +171,14 @@ ConvergenceResults run_convergence(const ConvergenceExperiment& experiment, cons
     results.started = utc_now();
     ConvergenceRunner runner(experiment, options);
     for (const ConvergenceScene& entry : experiment.scenes) {
-        if (!runner.stopped()) runner.run(entry, finder, results.curves);
+        if (runner.stopped()) break;
+        const std::size_t before = results.curves.size();
+        try {
+            runner.run(entry, finder, results.curves);
+        } catch (const std::exception& error) {
+            results.curves.erase(results.curves.begin() + static_cast<std::ptrdiff_t>(before), results.curves.end());
+            results.failures.push_back({entry.scene, error.what()});
+        }
     }
     results.interrupted = runner.stopped();
     results.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

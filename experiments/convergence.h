@@ -46,10 +46,11 @@ struct ConvergenceResults {
     std::string command, started;
     double seconds = 0.0;
     std::vector<ConvergenceCurve> curves;  // random and Sobol points of the same plane follow each other
+    std::vector<CellFailure> failures;     // scenes that could not be finished
     bool interrupted = false;              // then what was measured is worth nothing but for the cached references
 };
 
-// Throws what loading and rendering throw.
+// A scene that fails is listed in the results and does not end the run.
 ConvergenceResults run_convergence(const ConvergenceExperiment& experiment, const SceneFinder& finder,
                                    const RunOptions& options);
 

@@ -118,6 +118,7 @@ std::string print_convergence_json(const ConvergenceResults& results) {
         json["experiment"]["scenes"].push_back(
             {{"scene", scene.scene}, {"view", scene.view}, {"ao_radius", number_json(scene.ao_radius)}});
     }
+    json["failures"] = failures_json(results.failures);
     json["curves"] = Json::array();
     for (const ConvergenceCurve& curve : results.curves) {
         Json entry = {{"scene", curve.scene},

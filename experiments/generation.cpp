@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <exception>
 #include <optional>
 
 #include <fmt/format.h>
@@ -131,15 +132,19 @@ GenerationResults run_generation(const GenerationExperiment& experiment, const S
     const double all = static_cast<double>(experiment.walks.size()) * experiment.frames;
     for (std::size_t w = 0; w < experiment.walks.size() && !results.interrupted; ++w) {
         const GenerationWalk& walk = experiment.walks[w];
-        const Scene scene = finder.load(walk.scene);
-        WalkRun run(experiment, walk, scene, *context);
-        for (int i = 0; i < experiment.frames && !results.interrupted; ++i) {
-            progress.show((static_cast<double>(w) * experiment.frames + i) / all,
-                          fmt::format("{}: frame {} of {}", walk.name, i + 1, experiment.frames));
-            run.render(i, options.threads);
-            results.interrupted = options.stop && options.stop->load();
+        try {
+            const Scene scene = finder.load(walk.scene);
+            WalkRun run(experiment, walk, scene, *context);
+            for (int i = 0; i < experiment.frames && !results.interrupted; ++i) {
+                progress.show((static_cast<double>(w) * experiment.frames + i) / all,
+                              fmt::format("{}: frame {} of {}", walk.name, i + 1, experiment.frames));
+                run.render(i, options.threads);
+                results.interrupted = options.stop && options.stop->load();
+            }
+            if (!results.interrupted) run.finish(results.rows);
+        } catch (const std::exception& error) {
+            results.failures.push_back({walk.name, error.what()});
         }
-        if (!results.interrupted) run.finish(results.rows);
     }
     progress.clear();
     results.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -60,10 +60,11 @@ struct GenerationResults {
     std::string command, started, gl_renderer;
     double seconds = 0.0;
     bool interrupted = false;
-    std::vector<GenerationRow> rows;  // by walk, then by method
+    std::vector<GenerationRow> rows;    // by walk, then by method
+    std::vector<CellFailure> failures;  // walks that could not be finished
 };
 
-// Throws what loading and rendering throw.
+// A walk that fails is listed in the results and does not end the run. Throws GlUnavailable.
 GenerationResults run_generation(const GenerationExperiment& experiment, const SceneFinder& finder,
                                  const RunOptions& options);
 

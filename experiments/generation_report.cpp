@@ -44,6 +44,7 @@ std::string print_json(const GenerationResults& results) {
                                                {"minimum_separation", walk.minimum_separation}});
     }
     for (const Method& method : experiment.methods) json["experiment"]["methods"][method.name] = print_method(method);
+    json["failures"] = failures_json(results.failures);
     json["rows"] = Json::array();
     for (const GenerationRow& row : results.rows) {
         json["rows"].push_back({{"walk", row.walk},

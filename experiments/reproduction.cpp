@@ -92,7 +92,9 @@ Measurements run_comparison(const Reproduction& reproduction, const SceneFinder&
     Measurements measurements;
     measurements.left_out = leave_out_absent_scenes(experiment, finder);
     if (quick) make_quick(experiment);
-    const RunResults results = run_experiment(experiment, finder, options);
+    RunOptions recorded = options;
+    recorded.experiment_text = reproduction.text;
+    const RunResults results = run_experiment(experiment, finder, recorded);
     measurements.started = results.started, measurements.seconds = results.seconds;
     measurements.renderer = results.gl_renderer, measurements.cpu = results.system.cpu;
     measurements.interrupted = results.interrupted;
@@ -112,7 +114,7 @@ Measurements run_generation_experiment(const Reproduction& reproduction, const S
     measurements.started = results.started, measurements.seconds = results.seconds;
     measurements.renderer = results.gl_renderer, measurements.cpu = results.system.cpu;
     measurements.interrupted = results.interrupted;
-    measurements.cells = cells_of(results);
+    measurements.cells = cells_of(results), measurements.failures = results.failures;
     if (!results.interrupted) write_generation_files(results, options.output);
     return measurements;
 }
@@ -146,14 +148,15 @@ Reproduction load_reproduction(const std::string& name_or_path) {
     const std::filesystem::path path(name_or_path);
     if (std::ranges::find(names, name_or_path) != names.end()) {
         reproduction.file = name_or_path + ".toml";
-        reproduction.table = parse_config(embedded::reproductions::find(reproduction.file.string()), name_or_path);
+        reproduction.text = embedded::reproductions::find(reproduction.file.string());
     } else if (path.extension() == ".toml") {
         reproduction.file = path;
-        reproduction.table = read_config(path);
+        reproduction.text = read_config_text(path);
     } else {
         throw ConfigError(
             fmt::format("nothing to reproduce is called '{}'; {}", name_or_path, name_hint(name_or_path, names)));
     }
+    reproduction.table = parse_config(reproduction.text, name_or_path);
     reproduction.name = path.stem().string();
     if (is_drawing_file(reproduction.table)) {
         reproduction.drawings = parse_drawings(reproduction.table, reproduction.file);
@@ -182,6 +185,15 @@ Reproduction load_reproduction(const std::string& name_or_path) {
                             reproduction.file.string()));
     }
     return reproduction;
+}
+
+DiskUse disk_use(const Reproduction& reproduction, const SceneFinder& finder, bool write_frames, bool quick) {
+    // Walks keep nothing but a table.
+    if (!reproduction.drawings.empty() || kind_of(reproduction.table, reproduction.file) != ExperimentKind::comparison)
+        return {};
+    Experiment experiment = parse_experiment(reproduction.table, reproduction.file);
+    if (quick) make_quick(experiment);
+    return disk_use(experiment, finder, write_frames);
 }
 
 Measurements run_reproduction(const Reproduction& reproduction, const SceneFinder& finder, const RunOptions& options,

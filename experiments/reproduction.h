@@ -13,6 +13,7 @@
 
 #include "experiments/claims.h"
 #include "experiments/config.h"
+#include "experiments/disk_use.h"
 #include "experiments/drawings.h"
 #include "experiments/measurements.h"
 #include "experiments/presentation.h"
@@ -24,7 +25,8 @@ namespace plumb {
 struct Reproduction {
     std::string name, title, question;
     std::filesystem::path file;
-    ConfigValue table;  // the whole file
+    std::string text;   // the whole file
+    ConfigValue table;  // the same, parsed
     Presentation presentation;
     std::vector<Drawing> drawings;  // of a file that has nothing else, and nothing to run
 
@@ -37,6 +39,9 @@ std::vector<std::string> reproduction_names();
 // One of these by name, or a file. Throws ConfigError, also where a figure, number or claim names a method, curve,
 // plane or scene that the experiment does not have.
 Reproduction load_reproduction(const std::string& name_or_path);
+
+// The most that it may take, scenes that are not there counted where their views are named.
+DiskUse disk_use(const Reproduction& reproduction, const SceneFinder& finder, bool write_frames, bool quick);
 
 // Renders and measures, unless there are drawings only; the run's own files go to options.output. Optional scenes that
 // are not there are left out. Throws what loading and rendering throw.

@@ -13,6 +13,13 @@
 namespace plumb {
 namespace {
 
+// As a sentence, with a space before it; empty where a verdict needs no reason.
+std::string reason_text(const ClaimRecord& record) {
+    if (record.reason.empty()) return "";
+    const bool depends = record.verdict == to_string(ClaimVerdict::depends);
+    return fmt::format(" It {} {}.", depends ? "depends" : "could not be tested:", record.reason);
+}
+
 // Writes the files of one reproduction and gathers what its README.md and the terminal show.
 class Presenter {
 public:
@@ -112,8 +119,7 @@ private:
         add_heading("Claims", "");
         for (const ClaimRecord& record : records) {
             readme_ += fmt::format("- **{}** {} ({}) {}: {}, has to be {}.{}\n", record.verdict, record.claim,
-                                   record.source, record.test, record.measured, record.range,
-                                   record.reason.empty() ? "" : fmt::format(" It depends {}.", record.reason));
+                                   record.source, record.test, record.measured, record.range, reason_text(record));
         }
         presented_.text += "\n" + print_claims_text(records);
     }

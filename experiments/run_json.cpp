@@ -33,4 +33,10 @@ nlohmann::ordered_json run_json(const std::string& command, const std::string& s
               {"embree", system.embree}}}};
 }
 
+nlohmann::ordered_json failures_json(const std::vector<CellFailure>& failures) {
+    nlohmann::ordered_json json = nlohmann::ordered_json::array();
+    for (const CellFailure& failure : failures) json.push_back({{"cell", failure.cell}, {"message", failure.message}});
+    return json;
+}
+
 }  // namespace plumb

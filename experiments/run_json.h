@@ -2,9 +2,11 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "experiments/results.h"
 #include "experiments/system_facts.h"
 
 namespace plumb {
@@ -16,5 +18,7 @@ nlohmann::ordered_json number_json(double value);
 // seconds, and machine.
 nlohmann::ordered_json run_json(const std::string& command, const std::string& started, double seconds,
                                 const SystemFacts& system);
+
+nlohmann::ordered_json failures_json(const std::vector<CellFailure>& failures);
 
 }  // namespace plumb

@@ -96,6 +96,22 @@ TEST(Convergence, MeasuresTheKnownSlopeOfRandomPointsAndASteeperOneOfSobolPoints
     EXPECT_THAT(page, AllOf(HasSubstr("<svg"), Not(HasSubstr("src=")), Not(HasSubstr("href="))));
 }
 
+TEST(Convergence, ASceneThatFailsDoesNotEndTheOthers) {
+    const TemporaryFolder folder;
+    RunOptions options;
+    options.cache_dir = folder.path / "cache";
+    ConvergenceExperiment experiment = parse(valid);
+    experiment.samples = {2, 4, 8}, experiment.seeds = 1, experiment.reference_samples = 16;
+    experiment.scenes.insert(experiment.scenes.begin(), experiment.scenes.front());
+    experiment.scenes[0].scene = "no_such_scene";
+    const ConvergenceResults results = run_convergence(experiment, SceneFinder({}), options);
+    EXPECT_EQ(results.curves.size(), 4u);
+    for (const ConvergenceCurve& curve : results.curves) EXPECT_EQ(curve.scene, "cornell");
+    ASSERT_EQ(results.failures.size(), 1u);
+    EXPECT_EQ(results.failures[0].cell, "no_such_scene");
+    EXPECT_THAT(print_convergence_json(results), HasSubstr("no_such_scene"));
+}
+
 TEST(SvgChart, TicksAreRoundNumbersWithinTheRange) {
     EXPECT_THAT(logarithmic_ticks(0.9, 12.0), testing::Pointwise(testing::DoubleEq(), {1.0, 2.0, 5.0, 10.0}));
     EXPECT_THAT(logarithmic_ticks(0.009, 20.0), testing::Pointwise(testing::DoubleEq(), {0.01, 0.1, 1.0, 10.0}));
