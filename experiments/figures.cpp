@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -122,6 +124,49 @@ Chart make_panel(const Figure& figure, const std::vector<FigurePoint>& points, c
     return chart;
 }
 
+// One number of a table before it is averaged.
+struct TableEntry {
+    std::vector<std::string> group;  // attributes that the rows to be compared with each other share
+    std::map<std::vector<std::string>, std::vector<double>> of_places;
+};
+
+TableEntry table_entry(const Figure& figure, const std::string& column, const std::vector<std::string>& key,
+                       const std::vector<Cell>& cells) {
+    TableEntry entry;
+    MeasuredQuantity quantity;
+    quantity.measure = column, quantity.where = figure.where;
+    for (std::size_t i = 0; i < key.size(); ++i) {
+        const std::string& attribute = figure.rows[i];
+        quantity.first.wanted[attribute] = {key[i]};
+        if (attribute != "method" && attribute != "curve" && attribute != "parameter") entry.group.push_back(key[i]);
+    }
+    for (const MeasuredCase& found : measure_quantity(cells, quantity).cases)
+        entry.of_places[{found.scene, found.place, found.plane, found.truth}].push_back(found.value);
+    return entry;
+}
+
+// The mean over those places that every row has with which it may be compared, so that no row looks better for lacking
+// a hard one; with their number where some are left out. Where they share none: over its own.
+std::string mean_text(const TableEntry& entry, const std::vector<TableEntry>& entries) {
+    if (entry.of_places.empty()) return "-";
+    std::set<std::vector<std::string>> all, common;
+    for (const auto& [place, values] : entry.of_places) common.insert(place);
+    for (const TableEntry& other : entries) {
+        if (other.group != entry.group || other.of_places.empty()) continue;
+        for (const auto& [place, values] : other.of_places) all.insert(place);
+        std::erase_if(common, [&](const auto& place) { return !other.of_places.contains(place); });
+    }
+    std::vector<double> averaged;
+    std::size_t places = 0;
+    for (const auto& [place, values] : entry.of_places) {
+        if (!common.empty() && !common.contains(place)) continue;
+        averaged.insert(averaged.end(), values.begin(), values.end());
+        ++places;
+    }
+    const std::string mean = short_number(summarise_mean(averaged).mean);
+    return places == all.size() ? mean : fmt::format("{} ({} of {})", mean, places, all.size());
+}
+
 }  // namespace
 
 std::string print_chart(const Figure& figure, const std::vector<Cell>& cells) {
@@ -162,17 +207,11 @@ ResultTable make_table(const Figure& figure, const std::vector<Cell>& cells) {
     ResultTable table;
     table.columns = figure.rows, table.names = figure.rows.size();
     table.columns.insert(table.columns.end(), figure.columns.begin(), figure.columns.end());
-    for (const std::vector<std::string>& key : keys) {
-        MeasuredQuantity quantity;
-        quantity.where = figure.where;
-        for (std::size_t i = 0; i < key.size(); ++i) quantity.first.wanted[figure.rows[i]] = {key[i]};
-        std::vector<std::string> row = key;
-        for (const std::string& column : figure.columns) {
-            quantity.measure = column;
-            const MeanSummary mean = measure_quantity(cells, quantity).summary;
-            row.push_back(mean.count > 0 ? short_number(mean.mean) : "-");
-        }
-        table.rows.push_back(std::move(row));
+    table.rows = keys;
+    for (const std::string& column : figure.columns) {
+        std::vector<TableEntry> entries;
+        for (const std::vector<std::string>& key : keys) entries.push_back(table_entry(figure, column, key, cells));
+        for (std::size_t i = 0; i < keys.size(); ++i) table.rows[i].push_back(mean_text(entries[i], entries));
     }
     return table;
 }

@@ -18,7 +18,8 @@ std::string print_chart(const Figure& figure, const std::vector<Cell>& cells);
 // The points of such a chart as numbers.
 ResultTable chart_numbers(const Figure& figure, const std::vector<Cell>& cells);
 
-// One row for each combination of the figure's attributes, arithmetic means over the rest.
+// One row for each combination of the figure's attributes, arithmetic means over the rest: over those views and paths
+// that all rows have which differ in nothing but the method; "0.1 (4 of 5)" where that leaves some out.
 ResultTable make_table(const Figure& figure, const std::vector<Cell>& cells);
 
 // A seed's numbers beside ours, both also as ratios to the base row; ours are geometric means over views, their ratios

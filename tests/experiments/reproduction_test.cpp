@@ -198,6 +198,31 @@ TEST(Figures, NothingMeasuredMakesNoFigure) {
     EXPECT_EQ(print_picture_sheet({}, {}, "."), "");
 }
 
+TEST(Figures, TablesAverageOverThePlacesThatAllRowsHave) {
+    Figure figure;
+    figure.title = "Errors", figure.kind = FigureKind::table, figure.rows = {"method"}, figure.columns = {"rmse", "ms"};
+    std::vector<Cell> cells = sample_cells();
+    // The hard view of one method was refused: only its easy one would count.
+    for (Cell& cell : cells) {
+        if (cell.method == "other" && cell.place == "left") cell.values.erase(cell.values.begin());
+    }
+    const ResultTable table = make_table(figure, cells);
+    EXPECT_THAT(table.rows[0], testing::ElementsAre("taps = 10", "0.01 (1 of 2)", "15"));
+    EXPECT_THAT(table.rows[2], testing::ElementsAre("other", "0.02 (1 of 2)", "7.5"));
+    // A row per view and method: nothing is averaged.
+    figure.rows = {"place", "method"};
+    const ResultTable each = make_table(figure, cells);
+    EXPECT_THAT(each.rows[0], testing::ElementsAre("front", "taps = 10", "0.01", "10"));
+    EXPECT_THAT(each.rows[5], testing::ElementsAre("left", "other", "-", "10"));
+    // Rows that share no view tell their own.
+    std::erase_if(cells, [](const Cell& cell) { return cell.method == "taps = 10" && cell.place == "front"; });
+    figure.rows = {"method"};
+    const ResultTable apart = make_table(figure, cells);
+    EXPECT_THAT(apart.rows[0], testing::ElementsAre("taps = 20", "0.0075", "40 (1 of 2)"));
+    EXPECT_THAT(apart.rows[1], testing::ElementsAre("other", "0.02 (1 of 2)", "10 (1 of 2)"));
+    EXPECT_THAT(apart.rows[2], testing::ElementsAre("taps = 10", "0.02 (1 of 2)", "20 (1 of 2)"));
+}
+
 TEST(Figures, OriginalsStandBesideOursAsRatios) {
     Originals originals;
     originals.title = "Time", originals.measure = "ms", originals.unit = "ms", originals.base = "few";
@@ -283,6 +308,18 @@ TEST(Drawings, TheFilterSpreadsAPixelAndKeepsItsLight) {
 
 TEST(SvgRaster, SaysWhatIsWrongWithTextThatIsNoSvg) {
     EXPECT_THAT(message_of<ImageError>([] { rasterise_svg("<svg"); }), HasSubstr("cannot draw the SVG"));
+}
+
+TEST(Measurements, AClaimThatCouldNotBeTestedSaysSo) {
+    Reproduction reproduction = load_text(claim_with("value = { method = \"one\" }\nbelow = 1.0\n"));
+    Measurements measurements;
+    measurements.cells.push_back({"cornell", "front", "ao", "", "two", ""});
+    const TemporaryFolder folder;
+    present(reproduction, measurements, folder.path);
+    std::ifstream stream(folder.path / "README.md");
+    const std::string readme{std::istreambuf_iterator<char>(stream), {}};
+    EXPECT_THAT(readme, AllOf(HasSubstr("**untested**"), HasSubstr("It could not be tested: nothing was measured."),
+                              testing::Not(HasSubstr("It depends"))));
 }
 
 TEST(Measurements, ReadBackAndPresentedFilesAreWhole) {
