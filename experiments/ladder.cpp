@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
-#include <optional>
+#include <set>
 
 #include <fmt/format.h>
 
 #include "experiments/no_value.h"
+#include "experiments/result_files.h"
 #include "experiments/statistics.h"
 #include "experiments/svg_chart.h"
 #include "experiments/terminal_table.h"
@@ -27,9 +29,7 @@ Ladder read_ladder(ConfigReader& reader, const Experiment& experiment) {
     }
     if (ladder.rungs.empty()) reader.fail("rungs", "must name at least one method or oracle");
     std::vector<std::string> names;
-    if (!ladder.paths) {
-        for (const int layers : experiment.oracle_layers) names.push_back(oracle_name(layers));
-    }
+    for (const int layers : experiment.oracle_layers) names.push_back(oracle_name(layers));
     for (const Method& method : experiment.methods) names.push_back(method.name);
     for (const std::string& rung : ladder.rungs) {
         if (std::ranges::find(names, rung) != names.end()) continue;
@@ -40,15 +40,29 @@ Ladder read_ladder(ConfigReader& reader, const Experiment& experiment) {
     return ladder;
 }
 
-// The rows of one rung in one scene, by view or path.
-using Rung = std::map<std::string, const ResultRow*>;
+// One rung in one scene.
+struct Rung {
+    std::string name;
+    std::map<std::string, const ResultRow*> rows;  // measured, by view or path
+    std::map<std::string, std::string> refusals;   // of the other views or paths
+
+    // What happened to those views that it lacks.
+    std::string reason() const {
+        if (refusals.empty()) return "it was not rendered (see the failures)";
+        return fmt::format("{}: {}", refusals.begin()->first, refusals.begin()->second);
+    }
+};
 
 Rung rung_of(const RunResults& results, const std::string& scene, const Ladder& ladder, const std::string& name) {
-    Rung rung;
+    Rung rung{name, {}, {}};
     for (const ResultRow& row : results.rows) {
         const bool full = row.truth.empty() || row.truth == "full";
         const bool belongs = row.scene == scene && row.plane == ladder.plane && row.method == name && full;
-        if (belongs && row.path.empty() != ladder.paths && row.measured) rung[row.place()] = &row;
+        if (!belongs || row.path.empty() == ladder.paths) continue;
+        if (row.measured)
+            rung.rows[row.place()] = &row;
+        else
+            rung.refusals[row.place()] = row.refusal;
     }
     return rung;
 }
@@ -61,16 +75,15 @@ struct Step {
     bool both_take_time = false;
 };
 
-std::optional<Step> step_between(const Rung* above, const Rung& below) {
+Step step_between(const Rung* above, const Rung& below, const std::vector<std::string>& places) {
     std::vector<double> from, to, changes, saved;
-    for (const auto& [view, row] : below) {
-        if (above && !above->contains(view)) continue;
-        const ResultRow* upper = above ? above->at(view) : nullptr;
-        from.push_back(upper ? upper->rmse() : 0.0), to.push_back(row->rmse());
+    for (const std::string& place : places) {
+        const ResultRow& row = *below.rows.at(place);
+        const ResultRow* upper = above ? above->rows.at(place) : nullptr;
+        from.push_back(upper ? upper->rmse() : 0.0), to.push_back(row.rmse());
         changes.push_back(to.back() - from.back());
-        if (upper && upper->is_method() && row->is_method()) saved.push_back(upper->timing.median - row->timing.median);
+        if (upper && upper->is_method() && row.is_method()) saved.push_back(upper->timing.median - row.timing.median);
     }
-    if (changes.empty()) return std::nullopt;
     Step step{summarise_mean(from).mean, summarise_mean(to).mean, summarise_mean(changes), 0.0, !saved.empty()};
     if (step.both_take_time) step.milliseconds_saved = summarise_mean(saved).mean;
     return step;
@@ -82,6 +95,48 @@ std::string note_of(const Step& step) {
                                           : fmt::format("costs {:.3g} ms", -step.milliseconds_saved);
 }
 
+// Views or paths in which every rung was measured, of `all`.
+std::vector<std::string> common_places(const std::vector<Rung>& rungs, const std::set<std::string>& all) {
+    std::vector<std::string> places;
+    std::ranges::copy_if(all, std::back_inserter(places), [&](const std::string& place) {
+        return std::ranges::all_of(rungs, [&](const Rung& rung) { return rung.rows.contains(place); });
+    });
+    return places;
+}
+
+void climb_in_scene(const Ladder& ladder, const std::string& scene, const RunResults& results, Climb& climb) {
+    Waterfall waterfall{fmt::format("{}: {}", scene, ladder.title), "RMSE", {}};
+    const auto tell = [&](const std::string& gap) {
+        climb.gaps.push_back(fmt::format("Ladder '{}': {}.", waterfall.title, gap));
+    };
+    std::vector<Rung> rungs;
+    std::set<std::string> all;
+    for (const std::string& name : ladder.rungs) {
+        rungs.push_back(rung_of(results, scene, ladder, name));
+        for (const auto& entry : rungs.back().rows) all.insert(entry.first);
+    }
+    std::erase_if(rungs, [&](const Rung& rung) {
+        if (rung.rows.empty())
+            tell(fmt::format("nothing is measured of the rung '{}', which is left out ({})", rung.name, rung.reason()));
+        return rung.rows.empty();
+    });
+    const std::vector<std::string> places = common_places(rungs, all);
+    const char* kind = ladder.paths ? "path" : "view";
+    for (const Rung& rung : rungs) {
+        if (rung.rows.size() < all.size())
+            tell(fmt::format("the rung '{}' is measured in {} of {} {}s ({})", rung.name, rung.rows.size(), all.size(),
+                             kind, rung.reason()));
+    }
+    if (places.empty()) return tell(fmt::format("left out, because its rungs share no measured {}", kind));
+    for (const Rung& rung : rungs) {
+        const Step step = step_between(&rung == &rungs.front() ? nullptr : &rung - 1, rung, places);
+        WaterfallBar bar{rung.name, step.from, step.to, no_value, no_value, note_of(step)};
+        if (step.change.count > 1) bar.change_lower = step.change.lower, bar.change_upper = step.change.upper;
+        waterfall.bars.push_back(std::move(bar));
+    }
+    climb.waterfalls.push_back(std::move(waterfall));
+}
+
 }  // namespace
 
 std::vector<Ladder> read_ladders(const Experiment& experiment) {
@@ -91,26 +146,14 @@ std::vector<Ladder> read_ladders(const Experiment& experiment) {
     return ladders;
 }
 
-std::vector<Waterfall> climb(const std::vector<Ladder>& ladders, const RunResults& results) {
-    std::vector<Waterfall> waterfalls;
+Climb climb(const std::vector<Ladder>& ladders, const RunResults& results) {
+    Climb climb;
     for (const Ladder& ladder : ladders) {
         for (const ExperimentScene& entry : results.experiment.scenes) {
-            Waterfall waterfall{fmt::format("{}: {}", entry.scene, ladder.title), "RMSE", {}};
-            std::vector<Rung> rungs;
-            for (const std::string& name : ladder.rungs) {
-                rungs.push_back(rung_of(results, entry.scene, ladder, name));
-                const Rung* above = rungs.size() > 1 ? &rungs[rungs.size() - 2] : nullptr;
-                const std::optional<Step> step = step_between(above, rungs.back());
-                if (!step) break;
-                WaterfallBar bar{name, step->from, step->to, no_value, no_value, note_of(*step)};
-                if (step->change.count > 1)
-                    bar.change_lower = step->change.lower, bar.change_upper = step->change.upper;
-                waterfall.bars.push_back(std::move(bar));
-            }
-            if (waterfall.bars.size() == ladder.rungs.size()) waterfalls.push_back(std::move(waterfall));
+            if (!ladder.paths || !entry.paths.empty()) climb_in_scene(ladder, entry.scene, results, climb);
         }
     }
-    return waterfalls;
+    return climb;
 }
 
 std::string print_waterfalls(const std::vector<Waterfall>& waterfalls) {
@@ -150,6 +193,19 @@ std::string print_waterfall_table(const std::vector<Waterfall>& waterfalls) {
         }
     }
     return table.print();
+}
+
+std::string print_waterfall_csv(const std::vector<Waterfall>& waterfalls) {
+    const auto number = [](double value) { return std::isnan(value) ? "" : fmt::format("{:.9g}", value); };
+    std::string text = "ladder,rung,rmse_above,rmse,adds,adds_lower,adds_upper,time\n";
+    for (const Waterfall& waterfall : waterfalls) {
+        for (const WaterfallBar& bar : waterfall.bars) {
+            text += fmt::format("{},{},{},{},{},{},{},{}\n", csv_text(waterfall.title), csv_text(bar.label),
+                                number(bar.from), number(bar.to), number(bar.to - bar.from), number(bar.change_lower),
+                                number(bar.change_upper), csv_text(bar.note));
+        }
+    }
+    return text;
 }
 
 }  // namespace plumb

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "experiments/method_timing.h"
 #include "experiments/oracle_images.h"
@@ -47,7 +48,6 @@ SceneRun::SceneRun(const Experiment& experiment, const ExperimentScene& entry, c
       views_(views_of(entry, scene)) {
     if (views_.empty()) throw SceneError(fmt::format("scene '{}' has no view; add one to its scene file", scene.name));
     if (experiment.quick) views_.resize(1);
-    for (const std::string& view : views_) scene.camera(view);  // throws for a name that is not there
 }
 
 void SceneRun::show(double fraction, const std::string& text) {
@@ -125,80 +125,87 @@ void SceneRun::render_truths(const std::string& view, RunResults& results) {
                                             part.part(0.5, 1.0), results);
     }
     if (stopped()) return;
-    regions_[view] =
-        regions_of(tracer_.gbuffer(view_of(view), {.minimum_separation = entry_.minimum_separation}, control_.threads));
+    const Frame gbuffer =
+        tracer_.gbuffer(view_of(view), {.minimum_separation = entry_.minimum_separation}, control_.threads);
+    regions_[view] = regions_of(gbuffer);
+    // By which normals and albedo are judged where a surface is.
+    for (const char* depth : {"depth", "layer2.depth"}) {
+        if (gbuffer.has(depth) && !truths.full.frame.has(depth)) truths.full.frame.set(depth, gbuffer.plane(depth));
+    }
     truths_.emplace(view, std::move(truths));
 }
 
 void SceneRun::render_methods(const std::string& plane, RunResults& results) {
-    const Quantities quantities = quantities_of(experiment_, entry_, plane);
     std::map<std::string, std::string> missing;  // views that no run before this one finished, with their cells' keys
     for (const auto& [view, truths] : truths_) {
         if (std::string key = cell_key(view, plane); !load_cell(key)) missing.emplace(view, std::move(key));
     }
     if (missing.empty()) return;
-    // One pipeline per method for this plane alone, so that its time is the time of what the plane needs.
-    std::vector<std::unique_ptr<Pipeline>> pipelines;
-    std::vector<Pipeline*> working;
-    std::vector<const Method*> methods;
-    std::vector<int> frames;  // that are rendered, of which the last is measured
+    const std::vector<MethodOfPlane> methods = make_pipelines(plane, results);
+    if (methods.empty()) return;
+    for (const auto& [view, key] : missing) {
+        if (stopped()) return;
+        show(measuring_progress(plane, 0.0), fmt::format("{}, {}: methods", view, plane));
+        render_view(view, plane, methods, key, results);
+    }
+}
+
+// One pipeline per method for this plane alone, so that its time is the time of what the plane needs.
+std::vector<SceneRun::MethodOfPlane> SceneRun::make_pipelines(const std::string& plane, RunResults& results) {
+    const Quantities quantities = quantities_of(experiment_, entry_, plane);
+    std::vector<MethodOfPlane> methods;
     for (const Method& method : experiment_.methods) {
         const Method in_scene = method_in_scene(method, entry_, experiment_.file.string());
         try {
-            pipelines.push_back(std::make_unique<Pipeline>(control_.context, scene_, in_scene, quantities,
-                                                           experiment_.width, experiment_.height));
-            working.push_back(pipelines.back().get());
-            methods.push_back(&method);
-            frames.push_back(frames_to_settle(in_scene));
+            methods.push_back({method.name,
+                               std::make_unique<Pipeline>(control_.context, scene_, in_scene, quantities,
+                                                          experiment_.width, experiment_.height),
+                               frames_to_settle(in_scene)});
         } catch (const std::exception& error) {
             results.failures.push_back({fmt::format("{} / {} / {}", entry_.scene, plane, method.name), error.what()});
         }
     }
-    if (working.empty()) return;
+    return methods;
+}
 
-    for (const auto& [missing_view, key] : missing) {
-        const std::string& view = missing_view;  // captured below
-        const auto truths = truths_.find(view);
-        if (stopped()) return;
-        show(measuring_progress(plane, 0.0), fmt::format("{}, {}: methods", view, plane));
-        const View camera_view = view_of(view);
-        std::vector<PlaneImage> images;
-        std::vector<Pipeline*> rendered;
-        const auto fail = [&](const std::string& method, const std::exception& error) {
-            results.failures.push_back(
-                {fmt::format("{} / {} / {} / {}", entry_.scene, view, plane, method), error.what()});
-        };
-        for (std::size_t i = 0; i < working.size(); ++i) {
-            try {
-                PlaneImage image{view, plane, methods[i]->name, {}};
-                for (int seed = 0; seed < experiment_.seeds; ++seed) {
-                    Image picture = settled_plane(*working[i], plane, frames[i],
-                                                  {.now = {camera_view},
-                                                   .truth = &truths->second.full.frame,
-                                                   .seed = static_cast<std::uint32_t>(seed)});
-                    (seed == 0 ? image.image : image.other_seeds.emplace_back()) = std::move(picture);
-                }
-                image.gbuffer_bytes_per_pixel = static_cast<int>(working[i]->gbuffer_bytes_per_pixel());
-                images.push_back(std::move(image));
-                rendered.push_back(working[i]);
-            } catch (const std::exception& error) {
-                fail(methods[i]->name, error);
-            }
-        }
+void SceneRun::render_view(const std::string& view, const std::string& plane, const std::vector<MethodOfPlane>& methods,
+                           const std::string& key, RunResults& results) {
+    const View camera = view_of(view);
+    const Frame* truth = &truths_.at(view).full.frame;
+    std::vector<PlaneImage> images;
+    std::vector<Pipeline*> rendered;
+    const auto fail = [&](const std::string& method, const std::exception& error) {
+        results.failures.push_back({fmt::format("{} / {} / {} / {}", entry_.scene, view, plane, method), error.what()});
+    };
+    for (const MethodOfPlane& method : methods) {
         try {
-            std::vector<Timing> timings =
-                time_interleaved(rendered, camera_view, &truths->second.full.frame, experiment_.timing);
-            for (std::size_t i = 0; i < images.size(); ++i) images[i].timing = std::move(timings[i]);
-            // A cell with a failure is tried again by the next run.
-            const bool whole = images.size() == experiment_.methods.size();
-            keep_cell(whole ? key : "", std::move(images));
+            PlaneImage image{view, plane, method.name, {}};
+            for (int seed = 0; seed < experiment_.seeds; ++seed) {
+                Image picture =
+                    settled_plane(*method.pipeline, plane, method.frames_to_settle,
+                                  {.now = {camera}, .truth = truth, .seed = static_cast<std::uint32_t>(seed)});
+                (seed == 0 ? image.image : image.other_seeds.emplace_back()) = std::move(picture);
+            }
+            image.gbuffer_bytes_per_pixel = static_cast<int>(method.pipeline->gbuffer_bytes_per_pixel());
+            images.push_back(std::move(image));
+            rendered.push_back(method.pipeline.get());
         } catch (const std::exception& error) {
-            fail("timing", error);
+            fail(method.name, error);
         }
+    }
+    try {
+        std::vector<Timing> timings = time_interleaved(rendered, camera, truth, experiment_.timing);
+        for (std::size_t i = 0; i < images.size(); ++i) images[i].timing = std::move(timings[i]);
+        // A cell with a failure is tried again by the next run.
+        const bool whole = images.size() == experiment_.methods.size();
+        keep_cell(whole ? key : "", std::move(images));
+    } catch (const std::exception& error) {
+        fail("timing", error);
     }
 }
 
 void SceneRun::render_path_tracer_curve(const std::string& plane, RunResults& results) {
+    if (experiment_.path_tracer_samples.empty()) return;
     ReferenceSettings settings = full_truth_settings(experiment_, entry_);
     settings.quantities.planes = {plane};
     settings.target_error = 0.0;
@@ -207,31 +214,43 @@ void SceneRun::render_path_tracer_curve(const std::string& plane, RunResults& re
         if (!truths_.contains(view)) continue;
         if (!truths_.at(view).full.frame.has(fmt::format("half_a.{}", plane)))
             continue;  // a plane without noise has no curve
-        for (const int samples : experiment_.path_tracer_samples) {
+        if (stopped()) return;
+        show(measuring_progress(plane, 0.5), fmt::format("{}, {}: path tracer", view, plane));
+        const std::string key =
+            fmt::format("path tracer at {}; timed {} times; {}", fmt::join(experiment_.path_tracer_samples, ", "),
+                        experiment_.timing.repetitions, reference_key(scene_, view_of(view), settings));
+        if (load_cell(key)) continue;
+        try {
+            std::vector<PlaneImage> images = time_path_tracer(view, plane, settings);
             if (stopped()) return;
-            show(measuring_progress(plane, 0.5),
-                 fmt::format("{}, {}: path tracer at {} samples", view, plane, samples));
-            settings.samples = samples;
-            const std::string key = fmt::format("path tracer; {}", reference_key(scene_, view_of(view), settings));
-            if (load_cell(key)) continue;
-            try {
-                ReferenceControl control;
-                control.threads = control_.threads;
-                ReferenceResult result = tracer_.render(view_of(view), settings, control);
-                PlaneImage image{view, plane, fmt::format("path tracer, {} spp", samples),
-                                 std::move(result.frame.plane(plane)), samples};
-                const double milliseconds = 1000.0 * result.seconds;
-                image.timing = {milliseconds, milliseconds, milliseconds, 1, {{"path tracer", milliseconds}}};
-                std::vector<PlaneImage> cell;
-                cell.push_back(std::move(image));
-                keep_cell(key, std::move(cell));
-            } catch (const std::exception& error) {
-                results.failures.push_back(
-                    {fmt::format("{} / {} / {} / path tracer, {} spp", entry_.scene, view, plane, samples),
-                     error.what()});
-            }
+            keep_cell(key, std::move(images));
+        } catch (const std::exception& error) {
+            results.failures.push_back(
+                {fmt::format("{} / {} / {} / path tracer", entry_.scene, view, plane), error.what()});
         }
     }
+}
+
+std::vector<PlaneImage> SceneRun::time_path_tracer(const std::string& view, const std::string& plane,
+                                                   ReferenceSettings settings) {
+    std::vector<PlaneImage> images;
+    std::vector<TimedFrame> subjects;
+    for (const int samples : experiment_.path_tracer_samples) {
+        settings.samples = samples;
+        images.push_back({view, plane, fmt::format("path tracer, {} spp", samples), {}, samples});
+        subjects.emplace_back([this, settings, view = view_of(view), &plane, &images, place = images.size() - 1] {
+            ReferenceControl control;
+            control.threads = control_.threads;
+            ReferenceResult result;
+            if (!stopped()) result = tracer_.render(view, settings, control);
+            if (result.frame.has(plane)) images[place].image = std::move(result.frame.plane(plane));
+            return std::vector<PassTiming>{{"path tracer", 1000.0 * result.seconds}};
+        });
+    }
+    // The truths have warmed it up.
+    std::vector<Timing> timings = time_interleaved(subjects, {0, experiment_.timing.repetitions});
+    for (std::size_t i = 0; i < images.size(); ++i) images[i].timing = std::move(timings[i]);
+    return images;
 }
 
 void SceneRun::render_oracle(const std::string& view, RunResults& results) {
@@ -253,7 +272,7 @@ void SceneRun::measure(const PlaneImage& image, RunResults& results) {
         const bool is_full = truth.frame == &truths_.at(image.view).full.frame;
         if ((image.path_tracer_samples > 0 || image.oracle_layers >= 0) && !is_full) continue;
         try {
-            ResultRow row = measure_row(image, truth, regions_.at(image.view), experiment_.reference.most_noise);
+            ResultRow row = measure_row(image, truth, regions_.at(image.view), comparison_settings(experiment_));
             row.scene = entry_.scene;
             if (row.is_method()) describe_method(experiment_, entry_, image.method, row);
             results.rows.push_back(std::move(row));

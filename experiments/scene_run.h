@@ -52,8 +52,19 @@ private:
     // For the next run, unless the key is empty.
     void keep_cell(const std::string& key, std::vector<PlaneImage> images);
     void render_truths(const std::string& view, RunResults& results);
+    struct MethodOfPlane {
+        std::string name;
+        std::unique_ptr<Pipeline> pipeline;
+        int frames_to_settle = 1;  // that are rendered, of which the last is measured
+    };
     void render_methods(const std::string& plane, RunResults& results);
+    std::vector<MethodOfPlane> make_pipelines(const std::string& plane, RunResults& results);
+    void render_view(const std::string& view, const std::string& plane, const std::vector<MethodOfPlane>& methods,
+                     const std::string& key, RunResults& results);
     void render_path_tracer_curve(const std::string& plane, RunResults& results);
+    // At each number of samples, in turn.
+    std::vector<PlaneImage> time_path_tracer(const std::string& view, const std::string& plane,
+                                             ReferenceSettings settings);
     void render_oracle(const std::string& view, RunResults& results);
     void measure(const PlaneImage& image, RunResults& results);
 

@@ -38,9 +38,22 @@ TEST(Ladder, ReadsItsRungsAndRefusesThoseThatAreNotCompared) {
                 AllOf(HasSubstr("e.toml:8"), HasSubstr("did you mean 'two_layers'?")));
     EXPECT_THAT(failure(experiment_text, "plane = \"ao\"", "plane = \"total\""), HasSubstr("is not compared"));
     EXPECT_THAT(failure(experiment_text, "oracle = [0]", "oracle = [1]"), HasSubstr("oracle, all in view"));
-    EXPECT_THAT(failure(experiment_text, "plane = \"ao\"\nrungs", "plane = \"ao\"\npaths = true\nrungs"),
-                HasSubstr("neither a method nor an oracle"))
-        << "oracles have no paths";
+}
+
+TEST(Ladder, OraclesAreRungsOfPathsToo) {
+    const auto ladders = read_ladders(parse(experiment_text + "paths = true\n"));
+    ASSERT_EQ(ladders.size(), 1u);
+    EXPECT_TRUE(ladders[0].paths);
+    EXPECT_EQ(ladders[0].rungs[0], "oracle, all in view");
+}
+
+TEST(Ladder, TheShippedOneCanBeReadAndHasBothQuantitiesInMotion) {
+    const Experiment experiment = load_experiment(PLUMBLINE_SOURCE_DIR "/experiments/ladder.toml");
+    std::vector<std::string> of_paths;
+    for (const Ladder& ladder : read_ladders(experiment)) {
+        if (ladder.paths) of_paths.push_back(ladder.plane);
+    }
+    EXPECT_THAT(of_paths, testing::ElementsAre("ao", "indirect"));
 }
 
 // Two rungs over three views: what the second adds is 0.05, 0.1 and 0.15.
@@ -58,7 +71,9 @@ RunResults results_of_rungs() {
 
 TEST(Ladder, SaysWhatEachRungAddsWithItsIntervalAndTheTimeItSaves) {
     const RunResults results = results_of_rungs();
-    const auto waterfalls = climb({{"visibility", "ao", {"one", "two"}, false}}, results);
+    const Climb climbed = climb({{"visibility", "ao", {"one", "two"}, false}}, results);
+    const auto& waterfalls = climbed.waterfalls;
+    EXPECT_THAT(climbed.gaps, testing::IsEmpty());
     ASSERT_EQ(waterfalls.size(), 1u);
     const auto& bars = waterfalls[0].bars;
     ASSERT_EQ(bars.size(), 2u);
@@ -74,10 +89,45 @@ TEST(Ladder, SaysWhatEachRungAddsWithItsIntervalAndTheTimeItSaves) {
     EXPECT_THAT(print_waterfall_table(waterfalls), AllOf(HasSubstr("+0.1 ["), HasSubstr("saves 3 ms")));
 }
 
-TEST(Ladder, IsLeftOutWhereARungWasNotMeasured) {
+TEST(Ladder, IsWrittenAsCsvWithTheNumbersOfEachRung) {
+    const RunResults results = results_of_rungs();
+    const std::string csv = print_waterfall_csv(climb({{"a, b", "ao", {"one", "two"}, false}}, results).waterfalls);
+    EXPECT_THAT(csv, AllOf(testing::StartsWith("ladder,rung,rmse_above,rmse,adds,adds_lower,adds_upper,time\n"),
+                           HasSubstr("\"cornell: a, b\",one,0,0.1,0.1,"), HasSubstr(",two,0.1,0.2,0.1,-0.024"),
+                           HasSubstr(",saves 3 ms\n")));
+}
+
+TEST(Ladder, ARungThatWasRefusedIsPassedOverAndSaidWhy) {
     RunResults results = results_of_rungs();
-    for (ResultRow& row : results.rows) row.measured = row.method == "one";
-    EXPECT_TRUE(climb({{"visibility", "ao", {"one", "two"}, false}}, results).empty());
+    for (const char* view : {"front", "left", "right"}) {
+        results.rows.push_back(sample_row(view, "between", 0.12, 2.0));
+        results.rows.back().measured = false, results.rows.back().refusal = "4096 samples per pixel would do";
+    }
+    const Climb climbed = climb({{"visibility", "ao", {"one", "between", "two", "lost"}, false}}, results);
+    ASSERT_EQ(climbed.waterfalls.size(), 1u);
+    ASSERT_EQ(climbed.waterfalls[0].bars.size(), 2u);
+    EXPECT_EQ(climbed.waterfalls[0].bars[1].label, "two");
+    EXPECT_NEAR(climbed.waterfalls[0].bars[1].from, 0.1, 1e-12) << "its step is from the last rung that is told";
+    EXPECT_THAT(climbed.gaps,
+                testing::ElementsAre(AllOf(HasSubstr("'cornell: visibility'"), HasSubstr("rung 'between'"),
+                                           HasSubstr("front: 4096 samples per pixel would do")),
+                                     AllOf(HasSubstr("rung 'lost'"), HasSubstr("was not rendered"))));
+}
+
+TEST(Ladder, ItsBarsMeetBecauseAllAreOverTheViewsThatAllRungsHave) {
+    RunResults results = results_of_rungs();
+    results.rows[1].measured = false, results.rows[1].refusal = "too noisy";  // the second rung, in the first view
+    const Climb climbed = climb({{"visibility", "ao", {"one", "two"}, false}}, results);
+    ASSERT_EQ(climbed.waterfalls.size(), 1u);
+    const auto& bars = climbed.waterfalls[0].bars;
+    EXPECT_EQ(bars[0].to, bars[1].from);
+    EXPECT_NEAR(bars[1].to, 0.225, 1e-12);
+    EXPECT_THAT(climbed.gaps, testing::ElementsAre(AllOf(HasSubstr("'two' is measured in 2 of 3 views"),
+                                                         HasSubstr("front: too noisy"))));
+    results.rows[2].measured = results.rows[4].measured = false;  // the first rung, in the others
+    const Climb nothing = climb({{"visibility", "ao", {"one", "two"}, false}}, results);
+    EXPECT_TRUE(nothing.waterfalls.empty());
+    EXPECT_THAT(nothing.gaps.back(), HasSubstr("left out, because its rungs share no measured view"));
 }
 
 }  // namespace
