@@ -37,6 +37,7 @@ glm::vec3 PathIntegrator::add_start(const SurfacePoint& x, const glm::vec3& dire
     return albedo;
 }
 
+PLUMBLINE_FOR_EACH_MACHINE
 void PathIntegrator::start(const RayBatch& rays, const HitBatch& hits, const MetRays& met, const SampleLanes& samples,
                            VertexBatch& starts) const {
     starts.clear();
@@ -85,6 +86,7 @@ float PathIntegrator::counted(Start start, float distance) const {
 }
 
 // Draws the direction in which each path leaves its vertex, with what it counts; weight 0: it does not.
+PLUMBLINE_FOR_EACH_MACHINE
 void PathIntegrator::draw_directions(const VertexBatch& vertices, int vertex, Start start, ScatteredRays& scattered,
                                      Lanes<std::uint8_t>& passes) const {
     const bool specular_start = start == Start::specular, leaves_diffusely = vertex == 0 && !specular_start;
@@ -114,6 +116,7 @@ void PathIntegrator::draw_directions(const VertexBatch& vertices, int vertex, St
 }
 
 // Sends each path on its way.
+PLUMBLINE_FOR_EACH_MACHINE
 void PathIntegrator::scatter(const VertexBatch& vertices, int vertex, Start start, PathWorkspace& workspace,
                              int& ray_count) const {
     ScatteredRays& scattered = workspace.scattered;
@@ -122,14 +125,16 @@ void PathIntegrator::scatter(const VertexBatch& vertices, int vertex, Start star
     draw_directions(vertices, vertex, start, scattered, passes);
     Lanes<float> leaves, rise;
     const int count = vertices.count, end = whole_groups(count);
+    PLUMBLINE_INDEPENDENT_LANES
     for (int i = 0; i < end; ++i) {
         const glm::vec3 normal = vertices.geometric_normal.get(i), weight = scattered.weight.get(i);
         const float outwards = glm::dot(normal, rays.direction.get(i));
-        rise[i] = outwards > 0.0f || passes[i] != 0 ? 0.0f : vertices.bulge[i];
-        const bool open = outwards > 0.0f || passes[i] != 0 || rise[i] > 0.0f;
-        leaves[i] = open && weight.x + weight.y + weight.z > 0.0f ? 1.0f : 0.0f;
+        const float bulge = outwards > 0.0f ? 0.0f : vertices.bulge[i];
+        rise[i] = passes[i] != 0 ? 0.0f : bulge;
+        const float open = std::max(outwards, std::max(rise[i], passes[i] != 0 ? 1.0f : 0.0f));
+        leaves[i] = std::min(open, weight.x + weight.y + weight.z) > 0.0f ? 1.0f : 0.0f;
         const float height = rise[i] * glm::dot(normal, vertices.shading_normal.get(i));
-        scattered.face_plane[i] = rise[i] > 0.0f ? height / -outwards : 0.0f;
+        scattered.face_plane[i] = height / -outwards;  // where there is no rise: nothing over something
     }
     close_hidden_bulges(vertices, rise, workspace.to_bulges, leaves, ray_count);
     const auto leaving = std::count(leaves.begin(), leaves.begin() + count, 1.0f);
@@ -187,7 +192,6 @@ void PathIntegrator::pass_panes(const VertexBatch& vertices, int vertex, Start s
 // Russian roulette: a path goes on with a probability of its throughput, and counts for the ones that did not.
 bool PathIntegrator::survives_roulette(const SampleIndex& sample, int vertex, Start start,
                                        glm::vec3& throughput) const {
-    if (plan_.roulette_after == 0 || vertex <= plan_.roulette_after) return true;
     const float probability = std::min(1.0f, largest(throughput));
     const std::uint32_t use = path_dimension(vertex, start == Start::specular, VertexUse::roulette);
     if (sobol_point(sample, mix_word(use)).x >= probability) return false;
@@ -195,6 +199,7 @@ bool PathIntegrator::survives_roulette(const SampleIndex& sample, int vertex, St
     return true;
 }
 
+PLUMBLINE_FOR_EACH_MACHINE
 void PathIntegrator::arrive(const VertexBatch& from, int vertex, Start start, bool looks_for_emitters,
                             PathWorkspace& workspace, VectorLanes& sum, VertexBatch& next) const {
     const ScatteredRays& scattered = workspace.scattered;
@@ -212,32 +217,39 @@ void PathIntegrator::arrive(const VertexBatch& from, int vertex, Start start, bo
         next.time[j] = rays.time[i];
         next.throughput.set(j, from.throughput.get(lane) * scattered.weight.get(i));
     }
+    Lanes<float> glows, reflects;
+    for (int j = 0; j < end; ++j) {
+        glows[j] = next.emission.x[j] + next.emission.y[j] + next.emission.z[j];
+        reflects[j] = next.albedo.x[j] + next.albedo.y[j] + next.albedo.z[j];
+    }
     const bool limited = is_limited(start, vertex);
     const auto counts = [&](int j) { return limited ? counted(start, hits.distance[met.ray[j]]) : 1.0f; };
-    const auto face_sees = [&](int j) { return hits.distance[met.ray[j]] < scattered.face_plane[met.ray[j]]; };
+    const bool bulges = scene_.anything_bulges();
+    const auto face_sees = [&](int j) {
+        return bulges && hits.distance[met.ray[j]] < scattered.face_plane[met.ray[j]];
+    };
     for (int j = 0; j < met.count && looks_for_emitters; ++j) {
-        const glm::vec3 emission = next.emission.get(j);
-        if (emission == glm::vec3(0.0f) || face_sees(j)) continue;
+        if (glows[j] == 0.0f || face_sees(j)) continue;
         const int i = met.ray[j];
         const float weight = lights_.emission_weight(hits.get(i), next.geometric_normal.get(j), rays.direction.get(i),
                                                      scattered.density[i], rays.time[i]);
         // What a diffuse lobe gets straight from an emitter is direct light, which knows no radius.
         const float reached = start == Start::specular ? counts(j) : 1.0f;
-        sum.add(next.path[j], next.throughput.get(j) * emission * (weight * reached));
+        sum.add(next.path[j], next.throughput.get(j) * next.emission.get(j) * (weight * reached));
     }
     const bool goes_on = vertex < plan_.bounces && (start == Start::specular || plan_.indirect);
     if (!goes_on) return;
     // Paths that go on close up.
+    const bool roulette = plan_.roulette_after > 0 && vertex >= plan_.roulette_after;
     int count = 0;
     for (int j = 0; j < met.count; ++j) {
         const float share = counts(j);
         if (!(share > 0.0f) || face_sees(j)) continue;
+        if (reflects[j] == 0.0f && scene_.is_plain(hits.instance[met.ray[j]])) continue;
         glm::vec3 throughput = next.throughput.get(j) * share;
-        if (next.albedo.get(j) == glm::vec3(0.0f) && scene_.is_plain(hits.instance[met.ray[j]])) continue;
-        if (!survives_roulette(next.samples.get(j), vertex + 1, start, throughput)) continue;
-        if (count != j) next.set(count, next, j);
-        met.ray[count] = met.ray[j];
-        next.throughput.set(count, throughput);
+        if (roulette && !survives_roulette(next.samples.get(j), vertex + 1, start, throughput)) continue;
+        if (count != j) next.set(count, next, j), met.ray[count] = met.ray[j];
+        if (limited || roulette) next.throughput.set(count, throughput);
         ++count;
     }
     next.count = met.count = count;

@@ -9,6 +9,7 @@
 namespace plumb {
 
 // Adds to `sum` what reaches each vertex from one sampled light with an extent and from one without.
+PLUMBLINE_FOR_EACH_MACHINE
 void PathIntegrator::next_event(const VertexBatch& vertices, int vertex, Start start, PathWorkspace& workspace,
                                 VectorLanes& sum, int& rays) const {
     const bool specular_start = start == Start::specular;
@@ -53,6 +54,7 @@ void PathIntegrator::close_hidden_bulges(const VertexBatch& vertices, const Lane
 }
 
 // Adds to `sum` what each vertex makes of its sample in `workspace.lights`, where the way to the light is open.
+PLUMBLINE_FOR_EACH_MACHINE
 void PathIntegrator::connect(const VertexBatch& vertices, int vertex, Start start, PathWorkspace& workspace,
                              VectorLanes& sum, int& rays) const {
     const LightLanes& lights = workspace.lights;

@@ -110,6 +110,7 @@ void TileSampler::add_centre_samples(int left, int right, int y, int first_sampl
 }
 
 // The rays that wait in `scratch.primary`: through the pixel's area, the lens and the time that the shutter is open.
+PLUMBLINE_FOR_EACH_MACHINE
 void TileSampler::make_primary_rays(Scratch& scratch) const {
     RayBatch& rays = scratch.primary;
     const int count = rays.count;

@@ -298,21 +298,19 @@ struct CornerLanes {
 };
 
 // Where nothing moves. Two rounds: the first starts to fetch the triangles, for hardly any of them is in a nearby
-// cache. Lanes do not depend on each other.
-template <bool with_bulges>
+// cache. One by one: a record lies in two cache lines, from which single loads take less time than gathers.
 void TracedScene::gather_corners(const HitBatch& hits, const MetRays& met, CornerLanes& corners) const {
     constexpr int floats = sizeof(TriangleRecord) / sizeof(float);
     const int* first_triangle = table_.first_triangle.data();
     const float* records = &records_.data()->positions[0].x;
-    const int end = whole_groups(met.count);
+    const bool bulges = anything_bulges_;
     Lanes<int> record;
-    for (int i = 0; i < end; ++i) {
+    for (int i = 0; i < whole_groups(met.count); ++i) {
         const int ray = met.ray[i];
         record[i] = floats * (first_triangle[hits.instance[ray]] + static_cast<int>(hits.triangle[ray]));
         __builtin_prefetch(records + record[i]), __builtin_prefetch(records + record[i] + floats - 1);
     }
-    PLUMBLINE_INDEPENDENT_LANES
-    for (int i = 0; i < end; ++i) {
+    for (int i = 0; i < whole_groups(met.count); ++i) {
         const int ray = met.ray[i];
         const float u = hits.u[ray], v = hits.v[ray], w = 1.0f - u - v;
         const float* from = records + record[i];
@@ -321,7 +319,7 @@ void TracedScene::gather_corners(const HitBatch& hits, const MetRays& met, Corne
         corners.a.set(i, triangle.a), corners.b.set(i, triangle.b), corners.c.set(i, triangle.c);
         const std::array<glm::vec3, 3> normals = {at(9), at(12), at(15)};
         corners.normal_sum.set(i, interpolate(normals, u, v));
-        const Bulge bulge = with_bulges ? bulge_of(triangle, normals, u, v) : Bulge{0.0f, 0.0f};
+        const Bulge bulge = bulges ? bulge_of(triangle, normals, u, v) : Bulge{0.0f, 0.0f};
         corners.bulge_front[i] = bulge.front, corners.bulge_back[i] = bulge.back;
         corners.texture_u[i] = w * from[18] + u * from[20] + v * from[22];
         corners.texture_v[i] = w * from[19] + u * from[21] + v * from[23];
@@ -372,10 +370,8 @@ void TracedScene::surface_points(const RayBatch& rays, const HitBatch& hits, con
     CornerLanes corners;
     if (anything_moves_) {
         gather_moving_corners(rays, hits, met, corners);
-    } else if (anything_bulges_) {
-        gather_corners<true>(hits, met, corners);
     } else {
-        gather_corners<false>(hits, met, corners);
+        gather_corners(hits, met, corners);
     }
     Lanes<float> lit;
     const float *back_is_lit = table_.back_is_lit.data(), *albedos = &table_.albedo.data()->x,

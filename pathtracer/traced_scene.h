@@ -111,7 +111,6 @@ private:
     void add(std::uint32_t index, const TimeSpan& span);
     void attach(std::uint32_t index);
     void make_records();
-    template <bool with_bulges>
     void gather_corners(const HitBatch& hits, const MetRays& met, CornerLanes& corners) const;
     void gather_moving_corners(const RayBatch& rays, const HitBatch& hits, const MetRays& met,
                                CornerLanes& corners) const;
