@@ -247,6 +247,7 @@ LightSample LightTable::sample_emitter(const Emitter& emitter, const LightReceiv
     return sample;
 }
 
+PLUMBLINE_FOR_EACH_MACHINE
 void LightTable::sample_extended(const VertexBatch& receivers, const Lanes<std::uint32_t>& x, const Lanes<float>& y,
                                  LightLanes& samples) const {
     if (!only_plain_emitters_) {
@@ -260,8 +261,8 @@ void LightTable::sample_extended(const VertexBatch& receivers, const Lanes<std::
     Lanes<std::uint32_t> chosen;
     Lanes<float> within;
     const int end = whole_groups(receivers.count);
+    for (int i = 0; i < end; ++i) chosen[i] = static_cast<std::uint32_t>(extended_.sample(0x1p-32 * x[i]));
     for (int i = 0; i < end; ++i) {
-        chosen[i] = static_cast<std::uint32_t>(extended_.sample(0x1p-32 * x[i]));
         const Emitter& emitter = emitters_[chosen[i]];
         a.set(i, emitter.corners.a), b.set(i, emitter.corners.b), c.set(i, emitter.corners.c);
         normal.set(i, emitter.normal), emission.set(i, emitter.emission);
