@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "experiments/no_value.h"
+#include "experiments/row_measurement.h"
 
 namespace plumb {
 namespace {
@@ -28,20 +29,31 @@ bool matches(const RowPattern& pattern, const ResultRow& row) {
            matches_pattern(pattern.method, row.method);
 }
 
-// NaN where it does not exist.
-double stability_measure(const std::optional<Stability>& stability, const std::string& measure) {
-    if (!stability) return no_value;
-    if (measure == "flicker") return stability->flicker;
-    if (measure == "method_warping") return stability->method_warping;
-    if (measure == "temporal_variance") return stability->temporal_variance;
-    return no_value;
+bool is_of_stability(const std::string& measure) {
+    return std::ranges::find(stability_names(), measure) != stability_names().end();
+}
+
+// Into the value of a row, or why there is none; `where` ends the sentence.
+void tell_stability(const std::optional<PathStabilityResult>& stability, const ResultRow& row,
+                    const std::string& measure, const std::string& where, RowValue& result) {
+    const double value = stability ? stability->measure(measure) : no_value;
+    if (!std::isfinite(value))
+        result.untold = fmt::format("{}{} does not exist here", measure, where);
+    else if (result.untold = refusal_of(*stability, measure, row.reference_samples); result.untold.empty())
+        result.value = value;
 }
 
 double measure_of(const ResultRow& row, const std::string& measure) {
     if (measure == "rmse") return row.rmse();
     if (measure == "mse") return row.mse;
-    const double value = stability_measure(row.stability, measure);
-    return std::isnan(value) ? measure_named(row.measures, measure) : value;
+    const double value = measure_named(row.measures, measure);
+    return std::isnan(value) ? measure_named(row.fidelity, measure) : value;
+}
+
+double measure_of(const RegionError& region, const std::string& measure) {
+    if (measure == "rmse") return std::sqrt(std::max(0.0, region.mse));
+    if (measure == "mse") return region.mse;
+    return measure_named(region.measures, measure);
 }
 
 RowValue region_value(const ResultRow& row, const Threshold& threshold) {
@@ -54,17 +66,15 @@ RowValue region_value(const ResultRow& row, const Threshold& threshold) {
                                     names.empty() ? "it has none" : name_hint(threshold.region, names));
     } else if (found->pixels == 0) {
         result.untold = fmt::format("region '{}' has no pixels", threshold.region);
-    } else if (threshold.measure != "rmse" && threshold.measure != "mse") {
-        const double value = stability_measure(found->stability, threshold.measure);
-        if (std::isfinite(value)) {
-            result.value = value;
-        } else {
-            result.untold = fmt::format("{} over region '{}' does not exist here", threshold.measure, threshold.region);
-        }
-    } else if (found->mse_lower <= 0.0) {
+    } else if (is_of_stability(threshold.measure)) {
+        tell_stability(found->stability, row, threshold.measure, fmt::format(" over region '{}'", threshold.region),
+                       result);
+    } else if (!found->measured) {
         result.untold = fmt::format("the error over region '{}' is lost in the truth's noise", threshold.region);
+    } else if (const double value = measure_of(*found, threshold.measure); std::isfinite(value)) {
+        result.value = value;
     } else {
-        result.value = threshold.measure == "mse" ? found->mse : std::sqrt(found->mse);
+        result.untold = fmt::format("{} over region '{}' does not exist here", threshold.measure, threshold.region);
     }
     return result;
 }
@@ -76,6 +86,10 @@ RowValue value_of_row(const ResultRow& row, const Threshold& threshold) {
         return result;
     }
     if (!threshold.region.empty()) return region_value(row, threshold);
+    if (is_of_stability(threshold.measure)) {
+        tell_stability(row.stability, row, threshold.measure, "", result);
+        return result;
+    }
     const double value = measure_of(row, threshold.measure);
     if (std::isfinite(value)) {
         result.value = value;

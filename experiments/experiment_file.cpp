@@ -31,6 +31,18 @@ Quantities read_quantities(ConfigReader& reader) {
     return quantities;
 }
 
+ExperimentMeasures read_measures(ConfigReader& reader) {
+    ExperimentMeasures measures;
+    const std::string flip = reader.text("flip", to_string(measures.flip));
+    const auto found = std::ranges::find(flip_range_names(), flip);
+    if (found == flip_range_names().end())
+        reader.fail("flip", fmt::format("no range '{}'; {}", flip, name_hint(flip, flip_range_names())));
+    measures.flip = static_cast<FlipRange>(found - flip_range_names().begin());
+    measures.pixels_per_degree = reader.number("pixels_per_degree", measures.pixels_per_degree, 1.0, 1e4);
+    reader.finish();
+    return measures;
+}
+
 ExperimentPath read_path(ConfigReader& reader) {
     ExperimentPath path;
     path.path = reader.required_text("path");
@@ -190,6 +202,9 @@ Experiment parse_experiment(const ConfigValue& table, const std::filesystem::pat
         reference.integer("seed", static_cast<int>(experiment.reference.seed), 0, std::numeric_limits<int>::max()));
     experiment.reference.most_noise = reference.number("most_noise", experiment.reference.most_noise, 1e-6, 1e6);
     reference.finish();
+
+    ConfigReader measures = reader.table("measures");
+    experiment.measures = read_measures(measures);
 
     ConfigReader timing = reader.table("timing");
     experiment.timing.warm_up = timing.integer("warm_up", experiment.timing.warm_up, 0, 1000);

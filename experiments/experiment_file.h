@@ -11,6 +11,7 @@
 
 #include "experiments/method_file.h"
 #include "frames/quantities.h"
+#include "metrics/comparison.h"
 
 namespace plumb {
 
@@ -45,6 +46,11 @@ struct ExperimentReference {
     double most_noise = 0.1;
 };
 
+struct ExperimentMeasures {
+    FlipRange flip = FlipRange::by_plane;  // none where its time matters more (metrics/comparison.h)
+    double pixels_per_degree = flip_pixels_per_degree;
+};
+
 struct ExperimentTiming {
     int warm_up = 1;      // frames rendered before the clock runs
     int repetitions = 7;  // frames timed per method, interleaved
@@ -65,6 +71,7 @@ struct Experiment {
     int width = 480, height = 270;
     Quantities quantities;  // defaults for all scenes; `planes` empty
     ExperimentReference reference;
+    ExperimentMeasures measures;
     ExperimentTiming timing;
     int seeds = 1;  // pictures per view and method, each with other patterns of taps: errors are over all of them
     std::vector<int> path_tracer_samples = {4, 16};  // the path tracer's own points in the chart; empty: none

@@ -40,13 +40,17 @@ void add_errors(const ResultRow& row, Cell& cell) {
     }
     for (const RegionError& region : row.regions) {
         cell.set(fmt::format("rmse in {}", region.region), std::sqrt(std::max(region.mse, 0.0)));
-        if (region.stability) cell.set(fmt::format("flicker in {}", region.region), region.stability->flicker);
+        if (region.stability && region.stability->tells("flicker"))
+            cell.set(fmt::format("flicker in {}", region.region), region.stability->flicker.value);
     }
-    if (row.stability) {
-        cell.set("flicker", row.stability->flicker);
-        cell.set("warping", row.stability->method_warping);
-        cell.set("truth warping", row.stability->truth_warping);
-        cell.set("temporal variance", row.stability->temporal_variance);
+    for (const auto& [name, value] : row.fidelity) cell.set(name, value);
+    if (!row.stability) return;
+    // What the truth's noise drowns is left out, as a whole row is.
+    for (const auto& [measure, name] : {std::pair{"flicker", "flicker"},
+                                        {"method_warping", "warping"},
+                                        {"truth_warping", "truth warping"},
+                                        {"temporal_variance", "temporal variance"}}) {
+        if (row.stability->tells(measure)) cell.set(name, row.stability->measure(measure));
     }
 }
 

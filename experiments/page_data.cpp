@@ -51,13 +51,10 @@ Json regions_json(const ResultRow& row) {
 
 Json stability_json(const ResultRow& row) {
     if (!row.stability) return nullptr;
-    const Stability& of = *row.stability;
-    return {{"flicker", number_json(of.flicker)},
-            {"flicker_lower", number_json(of.flicker_lower)},
-            {"flicker_upper", number_json(of.flicker_upper)},
-            {"method_warping", number_json(of.method_warping)},
-            {"truth_warping", number_json(of.truth_warping)},
-            {"temporal_variance", number_json(of.temporal_variance)}};
+    Json json = Json::object();
+    for (const auto& [name, value] : row.stability->measures())
+        json[name] = row.stability->tells(name) ? number_json(value) : Json(nullptr);
+    return json;
 }
 
 std::string_view kind_of(const ResultRow& row) {
@@ -279,7 +276,8 @@ Json notes_json(const RunResults& results) {
     if (!results.path_pictures.empty()) {
         notes.push_back(
             "Flicker is the RMS, over pixels seen in two frames that follow each other, of how the error changed "
-            "from the one to the other along the surfaces' motion; what the truth itself does cancels.");
+            "from the one to the other along the surfaces' motion; what the truth itself does cancels. It is left out "
+            "where the truth's noise is too near to it.");
     }
     return notes;
 }

@@ -8,7 +8,6 @@
 
 #include <fmt/format.h>
 
-#include "experiments/mean_measures.h"
 #include "experiments/method_timing.h"
 #include "experiments/no_value.h"
 #include "experiments/oracle_images.h"
@@ -17,15 +16,15 @@
 #include "experiments/settling.h"
 #include "experiments/statistics.h"
 #include "metrics/comparison.h"
-#include "metrics/error_series.h"
 #include "metrics/path_stability.h"
+#include "metrics/plane_series.h"
 
 namespace plumb {
 namespace {
 
-ReferencedErrorSettings error_settings(const Experiment& experiment) {
-    ReferencedErrorSettings settings;
-    settings.noise_limit = experiment.reference.most_noise;
+ComparisonSettings series_settings(const Experiment& experiment) {
+    ComparisonSettings settings = comparison_settings(experiment);
+    settings.intervals = false;  // of single frames
     return settings;
 }
 
@@ -33,12 +32,6 @@ PathStabilitySettings stability_settings(const Experiment& experiment) {
     PathStabilitySettings settings;
     settings.noise_limit = experiment.reference.most_noise;
     return settings;
-}
-
-Stability stability_of(const PathStabilityResult& result) {
-    return {result.flicker.value,        result.flicker.lower,       result.flicker.upper,
-            result.method_warping.value, result.truth_warping.value, result.temporal_variance.value,
-            result.trustworthy};
 }
 
 }  // namespace
@@ -49,23 +42,15 @@ struct PathRun::Series {
         : plane(std::move(of_plane)),
           method(std::move(of_method)),
           oracle_layers(of_oracle_layers),
-          settings(error_settings(experiment)),
-          error(SeriesOf::frames, settings),
+          errors(plane, SeriesOf::frames, series_settings(experiment)),
           stability(plane, stability_settings(experiment)) {}
 
     std::string plane, method;
     int oracle_layers;  // as ResultRow has it
-    ReferencedErrorSettings settings;
     std::unique_ptr<Pipeline> pipeline;
     int gbuffer_bytes_per_pixel = 0;
-    ErrorSeries error;
-    struct OfRegion {
-        ErrorSeries error;
-        std::size_t pixels = 0;
-    };
-    std::map<std::string, OfRegion> regions;
+    PlaneSeries errors;
     PathStability stability;
-    MeanMeasures measures;
     std::vector<FrameMeasure> frames;
     std::vector<Image> images;
     std::vector<Timing> timings;
@@ -212,26 +197,9 @@ void PathRun::add(const PlaneImage& image, int frame, const Frame& truth, const 
     });
     Series& series = **found;
     const Frame test = frame_of(image);
-    ComparisonSettings settings;
-    settings.referenced = series.settings;
-    Frame reference(truth.width(), truth.height());
-    reference.set(image.plane, truth.plane(image.plane));
-    series.measures.add(compare_frames(test, reference, settings).planes.front().measures());
-
     FrameMeasure measure{path_.start + frame / path_.frames_per_second, no_value, no_value};
-    if (truth.has("half_a." + image.plane)) {
-        if (const auto error = series.error.add(test, truth, image.plane, reference_samples_))
-            measure.rmse = std::sqrt(std::max(0.0, error->mse));
-        for (const Region& region : regions) {
-            if (region.pixels == 0) continue;
-            Series::OfRegion& of_region =
-                series.regions
-                    .try_emplace(region.name, Series::OfRegion{ErrorSeries(SeriesOf::frames, series.settings)})
-                    .first->second;
-            of_region.error.add(test, truth, image.plane, reference_samples_, &region.mask);
-            of_region.pixels += region.pixels;
-        }
-    }
+    const PlaneComparison whole = std::move(series.errors.add(test, truth, regions).front());
+    if (whole.referenced) measure.rmse = std::sqrt(std::max(0.0, whole.referenced->mse));
     if (const std::optional<Flicker> flicker = series.stability.add(test, truth, nullptr, regions))
         measure.flicker = flicker->rms;
     series.frames.push_back(measure);
@@ -281,18 +249,14 @@ void PathRun::write_rows(RunResults& results) {
         if (row.is_method()) describe_method(experiment_, entry_, series->method, row);
         row.reference_samples = reference_samples_;
         row.gbuffer_bytes_per_pixel = series->gbuffer_bytes_per_pixel;
-        set_measures(series->measures.means(), row);
-        if (series->error.members() > 0) add_error(series->error.error(), row);
+        add_series(series->errors.results(), row);
         const std::map<std::string, PathStabilityResult> of_regions = series->stability.of_regions();
-        for (const auto& [region, of_region] : series->regions) {
-            if (of_region.error.members() == 0) continue;
-            const ReferencedError error = of_region.error.error();
-            row.regions.push_back({region, of_region.pixels, error.mse, error.lower, error.upper});
-            if (const auto found = of_regions.find(region); found != of_regions.end())
-                row.regions.back().stability = stability_of(found->second);
+        for (RegionError& region : row.regions) {
+            if (const auto found = of_regions.find(region.region); found != of_regions.end())
+                region.stability = found->second;
         }
         row.frames = series->frames;
-        row.stability = stability_of(series->stability.result());
+        row.stability = series->stability.result();
         if (row.is_method()) row.timing = median_timing(series->timings);
         results.rows.push_back(std::move(row));
     }

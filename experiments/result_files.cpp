@@ -1,6 +1,7 @@
 #include "experiments/result_files.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -11,6 +12,7 @@
 #include "experiments/run_json.h"
 #include "frames/atomic_file.h"
 #include "metrics/comparison.h"
+#include "metrics/gbuffer_fidelity.h"
 #include "metrics/regions.h"
 
 namespace plumb {
@@ -35,15 +37,22 @@ Json passes_of(const Timing& timing) {
     return json;
 }
 
-Json stability_json(const Stability& stability) {
-    return {{"flicker", number_json(stability.flicker)},
-            {"flicker_lower", number_json(stability.flicker_lower)},
-            {"flicker_upper", number_json(stability.flicker_upper)},
-            {"method_warping", number_json(stability.method_warping)},
-            {"truth_warping", number_json(stability.truth_warping)},
-            {"temporal_variance", number_json(stability.temporal_variance)},
-            {"trustworthy", stability.trustworthy}};
+Json stability_json(const PathStabilityResult& stability) {
+    Json json = Json::object();
+    for (const auto& [name, value] : stability.measures()) json[name] = number_json(value);
+    json.erase("flicker_trustworthy");
+    json["trustworthy"] = stability.trustworthy;
+    return json;
 }
+
+Json measures_json(const std::vector<std::pair<std::string, double>>& measures) {
+    Json json = Json::object();
+    for (const auto& [name, value] : measures) json[name] = number_json(value);
+    return json;
+}
+
+// What the CSV file has of every region, beside the mean squared error and flicker; the JSON file has all.
+constexpr std::array region_measures = {"mae", "bias", "psnr", "ssim", "flip", "median", "p95", "p99"};
 
 void add_path(const ResultRow& row, Json& json) {
     if (row.stability) json["stability"] = stability_json(*row.stability);
@@ -78,14 +87,20 @@ Json row_json(const ResultRow& row) {
                          {"unbiased_mse_lower", number_json(row.seeds_mse_lower)},
                          {"unbiased_mse_upper", number_json(row.seeds_mse_upper)}};
     }
-    json["measures"] = Json::object();
-    for (const auto& [name, value] : row.measures) json["measures"][name] = number_json(value);
+    for (const auto& [name, estimate] : row.over_seeds) {
+        json["seeds"][name + "_lower"] = number_json(estimate.lower);
+        json["seeds"][name + "_upper"] = number_json(estimate.upper);
+    }
+    json["measures"] = measures_json(row.measures);
     for (const RegionError& region : row.regions) {
         json["regions"][region.region] = {{"pixels", region.pixels},
                                           {"unbiased_mse", number_json(region.mse)},
                                           {"lower", number_json(region.mse_lower)},
-                                          {"upper", number_json(region.mse_upper)}};
+                                          {"upper", number_json(region.mse_upper)},
+                                          {"measured", region.measured},
+                                          {"measures", measures_json(region.measures)}};
     }
+    if (!row.fidelity.empty()) json["gbuffer"] = measures_json(row.fidelity);
     add_path(row, json);
     json["milliseconds"] = {{"median", row.timing.median},
                             {"lower_quartile", row.timing.lower_quartile},
@@ -114,6 +129,8 @@ Json experiment_json(const Experiment& experiment) {
                          {"seed", experiment.reference.seed},
                          {"most_noise", experiment.reference.most_noise}};
     json["seeds"] = experiment.seeds;
+    json["measures"] = {{"flip", to_string(experiment.measures.flip)},
+                        {"pixels_per_degree", experiment.measures.pixels_per_degree}};
     json["timing"] = {{"warm_up", experiment.timing.warm_up}, {"repetitions", experiment.timing.repetitions}};
     json["path_tracer_samples"] = experiment.path_tracer_samples;
     json["baseline"] = experiment.baseline;
@@ -159,7 +176,11 @@ std::string print_csv(const RunResults& results) {
     for (const char* measure : {"unbiased_mse", "flicker"}) {
         for (const std::string& region : region_names()) text += fmt::format(",{}_{}", measure, region);
     }
-    text += ",flicker,flicker_lower,flicker_upper,method_warping,truth_warping,temporal_variance";
+    for (const char* measure : region_measures) {
+        for (const std::string& region : region_names()) text += fmt::format(",{}_{}", measure, region);
+    }
+    for (const std::string& name : stability_names()) text.append(",").append(name);
+    for (const std::string& name : fidelity_names()) text.append(",").append(name);
     text +=
         ",milliseconds,milliseconds_lower_quartile,milliseconds_upper_quartile,repetitions,gbuffer_bytes_per_pixel,"
         "refusal\n";
@@ -179,12 +200,14 @@ std::string print_csv(const RunResults& results) {
             }
         };
         add_regions([](const RegionError& region) { return region.mse; });
-        add_regions([](const RegionError& region) { return region.stability ? region.stability->flicker : no_value; });
-        const Stability stability =
-            row.stability.value_or(Stability{no_value, no_value, no_value, no_value, no_value, no_value, false});
-        for (const double value : {stability.flicker, stability.flicker_lower, stability.flicker_upper,
-                                   stability.method_warping, stability.truth_warping, stability.temporal_variance})
-            text.append(",").append(csv_number(value));
+        add_regions(
+            [](const RegionError& region) { return region.stability ? region.stability->flicker.value : no_value; });
+        for (const char* measure : region_measures)
+            add_regions([&](const RegionError& region) { return measure_named(region.measures, measure); });
+        for (const std::string& name : stability_names())
+            text.append(",").append(csv_number(row.stability ? row.stability->measure(name) : no_value));
+        for (const std::string& name : fidelity_names())
+            text.append(",").append(csv_number(measure_named(row.fidelity, name)));
         text += fmt::format(",{},{},{},{},{},{}\n", csv_number(row.timing.median),
                             csv_number(row.timing.lower_quartile), csv_number(row.timing.upper_quartile),
                             row.timing.repetitions, row.gbuffer_bytes_per_pixel, csv_text(row.refusal));

@@ -11,6 +11,8 @@
 #include "experiments/experiment_file.h"
 #include "experiments/no_value.h"
 #include "experiments/system_facts.h"
+#include "metrics/block_bootstrap.h"
+#include "metrics/path_stability.h"
 #include "rasterizer/pipeline.h"
 
 namespace plumb {
@@ -21,20 +23,14 @@ struct Timing {
     std::vector<PassTiming> passes;  // medians; of the path tracer: one
 };
 
-// How steady the error is over a camera path (metrics/path_stability.h), with 95 % intervals.
-struct Stability {
-    double flicker = 0.0, flicker_lower = 0.0, flicker_upper = 0.0;
-    double method_warping = 0.0, truth_warping = 0.0;
-    double temporal_variance = 0.0;
-    bool trustworthy = true;  // the truth's noise is small beside the flicker
-};
-
 // The error over some of a view's pixels (metrics/regions.h).
 struct RegionError {
     std::string region;
     std::size_t pixels = 0;
-    double mse = 0.0, mse_lower = 0.0, mse_upper = 0.0;  // free of the reference's noise
-    std::optional<Stability> stability = {};             // of a path
+    double mse = 0.0, mse_lower = 0.0, mse_upper = 0.0;  // free of the reference's noise where that is possible
+    std::optional<PathStabilityResult> stability = {};   // of a path
+    bool measured = true;                                // false: the reference's noise is too near to the difference
+    std::vector<std::pair<std::string, double>> measures = {};  // as ResultRow has them
 };
 
 // One frame of a camera path.
@@ -58,14 +54,17 @@ struct ResultRow {
     double mse = 0.0, mse_lower = 0.0, mse_upper = 0.0;
     int seeds = 1;  // pictures that all of this is the mean of
     double seeds_mse_lower = no_value,
-           seeds_mse_upper = no_value;  // for this very view, over seeds alone; NaN for one seed
-    double psnr = 0.0, ssim = 0.0;      // NaN where there is none
-    double noise_mse = 0.0;             // of the reference
-    double data_range = 1.0;            // peak of PSNR, range of SSIM
-    int reference_samples = 0;          // per pixel
+           seeds_mse_upper = no_value;                         // for this very view, over seeds alone; NaN for one seed
+    std::vector<std::pair<std::string, Estimate>> over_seeds;  // likewise, of the measures; empty for one seed
+    double psnr = 0.0, ssim = 0.0;                             // NaN where there is none
+    double noise_mse = 0.0;                                    // of the reference
+    double data_range = 1.0;                                   // peak of PSNR, range of SSIM
+    int reference_samples = 0;                                 // per pixel
     std::vector<RegionError> regions;
-    std::vector<FrameMeasure> frames;    // of a path
-    std::optional<Stability> stability;  // of a path
+    // Of planes of the G-buffer, of views: what metrics/gbuffer_fidelity.h says of that plane.
+    std::vector<std::pair<std::string, double>> fidelity;
+    std::vector<FrameMeasure> frames;              // of a path
+    std::optional<PathStabilityResult> stability;  // of a path
 
     std::string curve, curve_parameter;  // of a method that a sweep made; empty: none
     double curve_value = 0.0;

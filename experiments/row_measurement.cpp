@@ -1,13 +1,14 @@
 #include "experiments/row_measurement.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <string_view>
 
 #include <fmt/format.h>
 
-#include "experiments/mean_measures.h"
 #include "experiments/no_value.h"
-#include "metrics/comparison.h"
-#include "metrics/error_series.h"
+#include "metrics/gbuffer_fidelity.h"
 
 namespace plumb {
 namespace {
@@ -15,44 +16,63 @@ namespace {
 // Of the truth's frame, what belongs to one plane.
 Frame reference_of(const Truth& truth) {
     Frame reference(truth.frame->width(), truth.frame->height());
-    for (const char* prefix : {"", "half_a.", "half_b."}) {
-        const std::string name = prefix + truth.plane;
+    for (const std::string& name : {truth.plane, half_a_of(truth.plane), half_b_of(truth.plane)}) {
         if (truth.frame->has(name)) reference.set(name, truth.frame->plane(name));
     }
     reference.facts["samples"] = fmt::format("{}", truth.samples);
     return reference;
 }
 
+RegionError region_error(std::string region, std::size_t pixels, std::vector<std::pair<std::string, double>> measures,
+                         const std::optional<ReferencedError>& error) {
+    RegionError result{std::move(region), pixels};
+    result.mse = measure_named(measures, "mse");
+    result.mse_lower = measure_named(measures, "mse_lower"), result.mse_upper = measure_named(measures, "mse_upper");
+    if (error) {
+        result.mse = error->mse, result.mse_lower = error->lower, result.mse_upper = error->upper;
+        result.measured = error->trustworthy;
+    }
+    result.measures = std::move(measures);
+    return result;
+}
+
+// How right a plane of the G-buffer is. Where the plane is not the depth itself, both sides are compared where the
+// truth holds a surface, as far as the truth has its depth; nothing for planes of light.
+std::vector<std::pair<std::string, double>> fidelity_of(const PlaneImage& image, const Frame& truth) {
+    const auto dot = image.plane.rfind('.');
+    const std::string layer = dot == std::string::npos ? "" : image.plane.substr(0, dot + 1);
+    const std::string name = image.plane.substr(layer.size()), depth = layer + "depth";
+    constexpr std::array<std::string_view, 4> names = {"depth", "normal", "albedo", "motion"};
+    if (std::ranges::find(names, name) == names.end() || !truth.has(depth)) return {};
+    Frame test(truth.width(), truth.height()), reference(truth.width(), truth.height());
+    test.set("depth", truth.plane(depth)), reference.set("depth", truth.plane(depth));
+    test.set(name, image.image), reference.set(name, truth.plane(image.plane));
+    auto measures = gbuffer_fidelity(test, reference).front().measures();
+    std::erase_if(measures, [&](const auto& measure) {
+        // Whether the test holds a surface its depth alone could tell.
+        return std::isnan(measure.second) || (name != "depth" && measure.first.starts_with("hit_agreement"));
+    });
+    if (name != "depth")
+        std::erase_if(measures, [](const auto& measure) { return measure.first.starts_with("depth_error"); });
+    return measures;
+}
+
 // What a method shows, seed after seed.
-void add_seeds(const PlaneImage& image, const Frame& reference, int reference_samples,
-               const std::vector<Region>& regions, const ComparisonSettings& settings, ResultRow& row) {
-    MeanMeasures measures;
-    ErrorSeries error(SeriesOf::seeds, settings.referenced);
-    std::vector<ErrorSeries> errors_in_regions(regions.size(), error);
-    const bool has_halves = reference.has("half_a." + image.plane);
+void add_seeds(const PlaneImage& image, const Frame& reference, const std::vector<Region>& regions,
+               ComparisonSettings settings, ResultRow& row) {
+    settings.intervals = false;  // of single seeds
+    PlaneSeries series(image.plane, SeriesOf::seeds, settings);
     const auto add = [&](const Image& picture) {
         Frame test(picture.width(), picture.height());
         test.set(image.plane, picture);
-        measures.add(compare_frames(test, reference, settings).planes.front().measures());
-        if (!has_halves) return;
-        error.add(test, reference, image.plane, reference_samples);
-        for (std::size_t i = 0; i < regions.size(); ++i)
-            errors_in_regions[i].add(test, reference, image.plane, reference_samples, &regions[i].mask);
+        series.add(test, reference, regions);
     };
     add(image.image);
     for (const Image& picture : image.other_seeds) add(picture);
-
     row.seeds = 1 + static_cast<int>(image.other_seeds.size());
-    set_measures(measures.means(), row);
-    if (error.members() == 0) return;
-    add_error(error.error(), row);
-    const Estimate over_seeds = error.over_members();
-    row.seeds_mse_lower = over_seeds.lower, row.seeds_mse_upper = over_seeds.upper;
-    for (std::size_t i = 0; i < regions.size(); ++i) {
-        if (errors_in_regions[i].members() == 0) continue;
-        const ReferencedError inside = errors_in_regions[i].error();
-        row.regions.push_back({regions[i].name, regions[i].pixels, inside.mse, inside.lower, inside.upper});
-    }
+    add_series(series.results(), row);
+    // All seeds show the same pixels.
+    for (RegionError& region : row.regions) region.pixels /= static_cast<std::size_t>(row.seeds);
 }
 
 }  // namespace
@@ -61,16 +81,42 @@ void set_measures(std::vector<std::pair<std::string, double>> measures, ResultRo
     row.measures = std::move(measures);
     row.mse = measure_named(row.measures, "mse"), row.psnr = measure_named(row.measures, "psnr");
     row.ssim = measure_named(row.measures, "ssim"), row.data_range = measure_named(row.measures, "data_range");
-    row.mse_lower = row.mse_upper = row.seeds_mse_lower = row.seeds_mse_upper = no_value;
+    row.mse_lower = measure_named(row.measures, "mse_lower"), row.mse_upper = measure_named(row.measures, "mse_upper");
+    row.seeds_mse_lower = row.seeds_mse_upper = no_value;
     row.measured = true;
+}
+
+void add_series(std::vector<PlaneSeriesResult> results, ResultRow& row) {
+    for (PlaneSeriesResult& part : results) {
+        if (!part.region.empty()) {
+            row.regions.push_back(region_error(part.region, part.pixels, std::move(part.measures), part.error));
+            continue;
+        }
+        set_measures(std::move(part.measures), row);
+        if (part.error) add_error(*part.error, row);
+        if (row.seeds < 2) continue;
+        row.over_seeds = std::move(part.over_members);
+        if (part.error_over_members) {
+            row.seeds_mse_lower = part.error_over_members->lower;
+            row.seeds_mse_upper = part.error_over_members->upper;
+        }
+    }
+}
+
+ComparisonSettings comparison_settings(const Experiment& experiment) {
+    ComparisonSettings settings;
+    settings.flip = experiment.measures.flip;
+    settings.pixels_per_degree = experiment.measures.pixels_per_degree;
+    settings.referenced.noise_limit = experiment.reference.most_noise;
+    return settings;
 }
 
 Frame frame_of(const PlaneImage& image) {
     Frame frame(image.image.width(), image.image.height());
     frame.set(image.plane, image.image);
     if (image.halves) {
-        frame.set("half_a." + image.plane, image.halves->a);
-        frame.set("half_b." + image.plane, image.halves->b);
+        frame.set(half_a_of(image.plane), image.halves->a);
+        frame.set(half_b_of(image.plane), image.halves->b);
     }
     return frame;
 }
@@ -83,6 +129,15 @@ std::string refusal_of(const ReferencedError& error) {
     return noise + "; no number of samples can be told, because the difference is lost in it";
 }
 
+std::string refusal_of(const PathStabilityResult& stability, std::string_view measure, int reference_samples) {
+    if (stability.tells(measure)) return "";
+    const std::string noise = fmt::format(
+        "not measured: the truth's noise (RMS {:.2g} from frame to frame) is too near to the flicker", stability.noise);
+    const auto samples = stability.samples_needed(reference_samples);
+    return samples && measure.starts_with("flicker") ? fmt::format("{}; {} samples per pixel would do", noise, *samples)
+                                                     : noise;
+}
+
 void add_error(const ReferencedError& error, ResultRow& row) {
     row.mse = error.mse, row.mse_lower = error.lower, row.mse_upper = error.upper;
     row.noise_mse = error.reference_noise_mse;
@@ -91,7 +146,7 @@ void add_error(const ReferencedError& error, ResultRow& row) {
 }
 
 ResultRow measure_row(const PlaneImage& image, const Truth& truth, const std::vector<Region>& regions,
-                      double most_noise) {
+                      const ComparisonSettings& settings) {
     ResultRow row;
     row.view = image.view, row.plane = image.plane, row.method = image.method, row.truth = truth.name;
     row.path_tracer_samples = image.path_tracer_samples, row.oracle_layers = image.oracle_layers;
@@ -99,22 +154,20 @@ ResultRow measure_row(const PlaneImage& image, const Truth& truth, const std::ve
     row.gbuffer_bytes_per_pixel = image.gbuffer_bytes_per_pixel;
     row.reference_samples = truth.samples;
 
+    row.fidelity = fidelity_of(image, *truth.frame);
+
     const Frame reference = reference_of(truth);
-    ComparisonSettings settings;
-    settings.referenced.noise_limit = most_noise;
     if (!image.other_seeds.empty()) {
-        add_seeds(image, reference, truth.samples, regions, settings, row);
+        add_seeds(image, reference, regions, settings, row);
         return row;
     }
-    const Frame test = frame_of(image);
-    const PlaneComparison comparison = compare_frames(test, reference, settings).planes.front();
-    set_measures(comparison.measures(), row);
-    row.mse = comparison.best_mse();
-    if (comparison.referenced) add_error(*comparison.referenced, row);
-    if (reference.has("half_a." + image.plane)) {
-        for (const ErrorInRegion& error :
-             errors_in_regions(test, reference, image.plane, truth.samples, regions, settings.referenced))
-            row.regions.push_back({error.region, error.pixels, error.error.mse, error.error.lower, error.error.upper});
+    for (const PlaneComparison& part : compare_plane(frame_of(image), reference, image.plane, settings, regions)) {
+        if (!part.region.empty()) {
+            row.regions.push_back(region_error(part.region, part.pixels, part.measures(), part.referenced));
+            continue;
+        }
+        set_measures(part.measures(), row);
+        if (part.referenced) add_error(*part.referenced, row);
     }
     return row;
 }

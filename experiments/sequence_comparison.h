@@ -1,9 +1,9 @@
 // One image, or a sequence of them, held against its reference frame by frame: errors, regions, G-buffers and, where
 // the reference knows how surfaces move, stability.
 //
-// Over a sequence, `rmse` is the root of the mean squared error of all frames and `psnr` follows from it; unbiased_*
-// come with intervals over frames and blocks (metrics/error_series.h); `maximum` and *_maximum are the largest of all
-// frames, `values` and `left_out` their sums, all other measures the means of the frames'.
+// Over a sequence, measures are those of metrics/plane_series.h, with intervals over frames and blocks; of a
+// G-buffer's,
+// *_maximum are the largest of all frames, all others the means of the frames'.
 #pragma once
 
 #include <map>
@@ -14,15 +14,11 @@
 #include "experiments/measured_thing.h"
 #include "frames/frame.h"
 #include "metrics/comparison.h"
-#include "metrics/error_series.h"
 #include "metrics/path_stability.h"
+#include "metrics/plane_series.h"
 #include "metrics/regions.h"
 
 namespace plumb {
-
-// flicker, flicker_lower, flicker_upper, method_warping, truth_warping, temporal_variance, temporal_variance_lower,
-// temporal_variance_upper, flicker_noise, flicker_trustworthy (1 or 0): of planes of a sequence.
-const std::vector<std::string>& stability_names();
 
 struct SequenceSettings {
     ComparisonSettings comparison;
@@ -49,17 +45,16 @@ public:
     const std::vector<std::string>& only_in_reference() const { return only_in_reference_; }
 
 private:
-    void add_regions(const Frame& test, const Frame& reference, const std::vector<std::string>& planes,
-                     const std::vector<Region>& regions, MeasuredFrame& frame);
-    void add_to_series(const Frame& test, const Frame& reference, const std::string& plane, const std::string& region,
-                       const Image* mask);
+    void add_plane(const Frame& test, const Frame& reference, const std::string& plane,
+                   const std::vector<Region>& regions, MeasuredFrame& frame);
+    std::vector<MeasuredThing> layers_over_frames() const;
     void add_stability(const Frame& test, const Frame& reference, const std::vector<Region>& regions,
                        MeasuredThing& thing);
 
     SequenceSettings settings_;
     std::vector<MeasuredFrame> frames_;
     std::vector<std::string> only_in_test_, only_in_reference_;
-    std::map<std::string, ErrorSeries> errors_;       // by MeasuredThing::full_name()
+    std::map<std::string, PlaneSeries> errors_;       // by plane
     std::map<std::string, PathStability> stability_;  // by plane
     std::optional<Frame> before_;                     // the reference's position
 };

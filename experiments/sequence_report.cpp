@@ -27,6 +27,15 @@ std::string number(double value, const char* format = "{:.6g}") {
     return std::isnan(value) ? "-" : fmt::format(fmt::runtime(format), value);
 }
 
+bool is_end_of_interval(std::string_view name) { return name.ends_with("_lower") || name.ends_with("_upper"); }
+
+// "0.0132 [0.012, 0.0143]"
+std::string number_with_interval(const MeasuredThing& thing, const std::string& name) {
+    const double lower = thing.measure(name + "_lower"), upper = thing.measure(name + "_upper");
+    const std::string value = number(thing.measure(name));
+    return std::isnan(lower) || std::isnan(upper) ? value : fmt::format("{} [{:.3g}, {:.3g}]", value, lower, upper);
+}
+
 // One row per measure that any of the things has, in their order.
 std::string print_columns(const std::vector<MeasuredThing>& things) {
     if (things.empty()) return "";
@@ -40,8 +49,9 @@ std::string print_columns(const std::vector<MeasuredThing>& things) {
     }
     TerminalTable table(columns);
     for (const std::string& name : names) {
+        if (is_end_of_interval(name)) continue;
         std::vector<std::string> cells = {name};
-        for (const MeasuredThing& thing : things) cells.push_back(number(thing.measure(name)));
+        for (const MeasuredThing& thing : things) cells.push_back(number_with_interval(thing, name));
         table.add_row(std::move(cells));
     }
     return table.print();
@@ -59,8 +69,8 @@ std::string error_with_interval(const MeasuredThing& thing) {
 
 std::string flicker_with_interval(const MeasuredThing& thing) {
     if (std::isnan(thing.measure("flicker"))) return "-";
-    return fmt::format("{:.3g} [{:.3g}, {:.3g}]", thing.measure("flicker"), thing.measure("flicker_lower"),
-                       thing.measure("flicker_upper"));
+    return fmt::format("{:.3g} [{:.3g}, {:.3g}]{}", thing.measure("flicker"), thing.measure("flicker_lower"),
+                       thing.measure("flicker_upper"), thing.measure("flicker_trustworthy") == 0.0 ? " (?)" : "");
 }
 
 // A column of a table with one row per thing.

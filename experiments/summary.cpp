@@ -9,8 +9,10 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "experiments/result_table.h"
+#include "experiments/row_measurement.h"
 #include "experiments/statistics.h"
 #include "experiments/terminal_table.h"
 
@@ -39,6 +41,8 @@ std::string with_interval(double value, double low, double high) {
     if (!std::isfinite(low) || !std::isfinite(high)) return short_number(value);
     return fmt::format("{} [{}, {}]", short_number(value), short_number(low), short_number(high));
 }
+
+std::string with_interval(const Estimate& of) { return with_interval(of.value, of.lower, of.upper); }
 
 std::string optional_number(double value, const char* format) {
     return std::isnan(value) ? "-" : fmt::format(fmt::runtime(format), value);
@@ -82,10 +86,10 @@ bool comparable(const ResultRow& row, const ResultRow& base) {
     return row.measured && base.measured && row.rmse() > 0.0 && base.rmse() > 0.0;
 }
 
-// Where the truth's noise leaves open whether an image flickers at all, the interval begins at zero.
-bool flickers_known(const ResultRow& row, const ResultRow& base) {
-    return row.stability && base.stability && row.stability->flicker_lower > 0.0 && base.stability->flicker_lower > 0.0;
+bool flicker_known(const ResultRow& row) {
+    return row.stability && row.stability->tells("flicker") && row.stability->flicker.lower > 0.0;
 }
+bool flickers_known(const ResultRow& row, const ResultRow& base) { return flicker_known(row) && flicker_known(base); }
 
 // One method against the baseline.
 std::string compare(const Subject& subject, const Cells& cells, const std::string& method,
@@ -97,7 +101,7 @@ std::string compare(const Subject& subject, const Cells& cells, const std::strin
         const ResultRow &row = *rows.at(method), &base = *rows.at(baseline);
         if (base.timing.median > 0.0 && row.timing.median > 0.0)
             times.push_back(row.timing.median / base.timing.median);
-        if (flickers_known(row, base)) flickers.push_back(row.stability->flicker / base.stability->flicker);
+        if (flickers_known(row, base)) flickers.push_back(row.stability->flicker.value / base.stability->flicker.value);
         if (comparable(row, base))
             errors.push_back(row.rmse() / base.rmse());
         else
@@ -135,7 +139,7 @@ std::vector<std::string> compare_oracles(const Subject& subject, const Cells& ce
             if (!rows.contains(name) || !rows.contains(*fewer)) continue;
             const ResultRow &row = *rows.at(name), &base = *rows.at(*fewer);
             if (comparable(row, base)) ratios.push_back(row.rmse() / base.rmse());
-            if (flickers_known(row, base)) flickers.push_back(row.stability->flicker / base.stability->flicker);
+            if (flickers_known(row, base)) flickers.push_back(row.stability->flicker.value / base.stability->flicker.value);
         }
         if (ratios.empty()) {
             sentences.push_back(fmt::format("In principle, {}: no {} allows a statement about '{}' against '{}'.",
@@ -149,6 +153,45 @@ std::vector<std::string> compare_oracles(const Subject& subject, const Cells& ce
         sentences.push_back(fmt::format("{}, over {}.", text, count_text(ratio.count, subject)));
     }
     return sentences;
+}
+
+// The peak of PSNR and data range of SSIM, without which neither says anything.
+std::string data_ranges_text(const std::vector<ResultRow>& rows) {
+    std::vector<std::pair<std::string, Estimate>> ranges;  // by plane and truth: from the least to the most
+    for (const ResultRow& row : rows) {
+        if (!row.measured) continue;
+        const std::string name = row.truth.empty() ? row.plane : fmt::format("{} ({})", row.plane, row.truth);
+        const auto found = std::ranges::find(ranges, name, &std::pair<std::string, Estimate>::first);
+        if (found == ranges.end()) {
+            ranges.push_back({name, {row.data_range, row.data_range, row.data_range}});
+        } else {
+            found->second.lower = std::min(found->second.lower, row.data_range);
+            found->second.upper = std::max(found->second.upper, row.data_range);
+        }
+    }
+    if (ranges.empty()) return "";
+    std::vector<std::string> texts;
+    for (const auto& [name, of] : ranges) {
+        const std::string least = short_number(of.lower), most = short_number(of.upper);
+        texts.push_back(least == most ? fmt::format("{} {}", name, most)
+                                      : fmt::format("{} {} to {}", name, least, most));
+    }
+    return fmt::format("Peak of PSNR and data range of SSIM (of linear values): {}.\n", fmt::join(texts, ", "));
+}
+
+std::string refusals_text(const std::vector<ResultRow>& rows) {
+    std::string text;
+    const auto add = [&](const ResultRow& row, const std::string& what, const std::string& refusal) {
+        if (refusal.empty()) return;
+        if (text.empty()) text = "\n(1) the truth is too noisy for these; nothing is claimed about them:\n";
+        text += fmt::format("    {} / {} / {}{} / {}{}: {}\n", row.scene, row.place(), row.plane,
+                            row.truth.empty() ? "" : fmt::format(" ({})", row.truth), row.method, what, refusal);
+    };
+    for (const ResultRow& row : rows) {
+        if (!row.measured) add(row, "", row.refusal);
+        if (row.stability) add(row, ", flicker", refusal_of(*row.stability, "flicker", row.reference_samples));
+    }
+    return text;
 }
 
 }  // namespace
@@ -186,22 +229,13 @@ std::string print_results_table(const std::vector<ResultRow>& rows) {
                             : short_number(row.timing.median));
         cells.push_back(row.gbuffer_bytes_per_pixel > 0 ? fmt::format("{}", row.gbuffer_bytes_per_pixel) : "-");
         if (has_paths) {
-            cells.push_back(row.stability ? with_interval(row.stability->flicker, row.stability->flicker_lower,
-                                                          row.stability->flicker_upper)
-                                          : "");
+            cells.push_back(!row.stability                     ? ""
+                            : !row.stability->tells("flicker") ? "refused (1)"
+                                                               : with_interval(row.stability->flicker));
         }
         table.add_row(std::move(cells));
     }
-    std::string text = table.print();
-    bool first = true;
-    for (const ResultRow& row : rows) {
-        if (row.measured) continue;
-        if (first) text += "\n(1) the truth is too noisy for these; nothing is claimed about them:\n";
-        first = false;
-        text += fmt::format("    {} / {} / {}{} / {}: {}\n", row.scene, row.place(), row.plane,
-                            row.truth.empty() ? "" : fmt::format(" ({})", row.truth), row.method, row.refusal);
-    }
-    return text;
+    return fmt::format("{}{}{}", table.print(), data_ranges_text(rows), refusals_text(rows));
 }
 
 std::vector<std::string> summarise(const RunResults& results) {

@@ -9,7 +9,7 @@
 namespace plumb {
 
 // One line per row: scene, view or path, plane, method, RMSE with its 95 % interval, PSNR, SSIM, milliseconds with
-// quartiles, and flicker where there are paths.
+// quartiles, and flicker where there are paths; then the data ranges, and why what is refused is.
 std::string print_results_table(const std::vector<ResultRow>& rows);
 
 // For every plane and truth, of views and of paths, and for every method but the baseline: its error, its flicker and

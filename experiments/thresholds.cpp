@@ -9,6 +9,8 @@
 #include <fmt/ranges.h>
 
 #include "metrics/comparison.h"
+#include "metrics/gbuffer_fidelity.h"
+#include "metrics/regions.h"
 
 namespace plumb {
 namespace {
@@ -60,9 +62,11 @@ void read_calibrated(ConfigReader& reader, Threshold& threshold) {
 
 void read_measure(ConfigReader& reader, Threshold& threshold) {
     std::vector<std::string> known = flicker_measures;
-    if (threshold.kind == ThresholdKind::error) known = measure_names();
-    if (threshold.kind == ThresholdKind::benefit)
+    if (threshold.kind == ThresholdKind::error) known.clear();
+    if (threshold.kind != ThresholdKind::flicker) {
         known.insert(known.end(), measure_names().begin(), measure_names().end());
+        known.insert(known.end(), fidelity_names().begin(), fidelity_names().end());
+    }
     const bool of_flicker = threshold.kind == ThresholdKind::flicker;
     threshold.measure = reader.text("measure", of_flicker ? "flicker" : "rmse");
     if (std::ranges::find(known, threshold.measure) == known.end()) {
@@ -70,12 +74,14 @@ void read_measure(ConfigReader& reader, Threshold& threshold) {
                                            to_string(threshold.kind), name_hint(threshold.measure, known)));
     }
     threshold.region = reader.text("region", "");
-    const bool measured_in_regions = threshold.measure == "rmse" || threshold.measure == "mse" ||
-                                     std::ranges::find(flicker_measures, threshold.measure) != flicker_measures.end();
-    if (!threshold.region.empty() && !measured_in_regions) {
-        reader.fail("region", fmt::format("regions have rmse, mse, {} only; take one of them as the measure",
-                                          fmt::join(flicker_measures, ", ")));
-    }
+    const auto& regions = region_names();
+    if (!threshold.region.empty() && std::ranges::find(regions, threshold.region) == regions.end())
+        reader.fail("region",
+                    fmt::format("no region '{}'; {}", threshold.region, name_hint(threshold.region, regions)));
+    if (!threshold.region.empty() && std::ranges::find(fidelity_names(), threshold.measure) != fidelity_names().end())
+        reader.fail("region", fmt::format("{} is only measured over whole views", threshold.measure));
+    if (!threshold.region.empty() && threshold.measure.starts_with("ms_ssim"))
+        reader.fail("region", "the coarser scales of ms_ssim have no regions; take another measure, such as ssim");
 }
 
 Threshold read_threshold(ConfigReader& reader) {

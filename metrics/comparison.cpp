@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <initializer_list>
+#include <iterator>
 #include <limits>
 
 #include <fmt/format.h>
@@ -32,36 +33,99 @@ FlipRange flip_range(FlipRange asked, std::string_view plane, const Image& refer
     return is_colour && !is_geometry_plane(plane) ? FlipRange::radiance : FlipRange::none;
 }
 
-void add_flip(const Image& test, const Image& reference, FlipRange range, const Image* mask, PlaneComparison& result) {
-    if (range == FlipRange::displayed) result.flip = mean_flip(ldr_flip(test, reference), mask);
-    if (range != FlipRange::radiance || !(value_percentile(reference, 1.0) > 0.0)) return;
-    result.exposures = exposure_range(reference);
-    result.flip = mean_flip(hdr_flip(test, reference, *result.exposures), mask);
-}
-
 std::vector<std::string> planes_to_compare(const Frame& frame) {
     auto names = frame.plane_names();
     std::erase_if(names, [](const std::string& name) { return is_derived_plane(name); });
     return names;
 }
 
-PlaneComparison compare(const Image& test, const Image& reference, const ComparisonSettings& settings,
-                        std::string_view plane) {
-    require_same_shape(test, reference, fmt::format("plane '{}'", plane));
-    const Image* mask = settings.referenced.mask;
-    const double range = settings.data_range ? *settings.data_range : default_data_range(plane, reference, mask);
-    PlaneComparison result;
-    result.plane = plane;
-    result.errors = pixel_errors(test, reference, range, mask);
-    if (test.width() >= ssim_window && test.height() >= ssim_window) {
-        result.ssim = ssim(test, reference, range, mask);
+// One plane of an image beside its reference, to be measured over several masks: what costs most, the maps of SSIM and
+// FLIP, is made once.
+class PlaneMeasurement {
+public:
+    PlaneMeasurement(const Image& test, const Image& reference, const ComparisonSettings& settings,
+                     std::string_view plane)
+        : test_(test), reference_(reference), settings_(settings), plane_(plane) {
+        require_same_shape(test, reference, fmt::format("plane '{}'", plane));
+        const Image* mask = settings.referenced.mask;
+        data_range_ = settings.data_range ? *settings.data_range : default_data_range(plane, reference, mask);
+        if (test.width() >= ssim_window && test.height() >= ssim_window) ssim_.emplace(test, reference, data_range_);
+        // The coarser scales have no mask.
+        if (!mask && std::min(test.width(), test.height()) >= multi_scale_ssim_least_side)
+            multi_scale_ssim_.emplace(test, reference, data_range_);
+        flip_ = flip_map(test, reference, settings, plane);
     }
-    // The coarser scales have no mask.
-    if (!mask && std::min(test.width(), test.height()) >= multi_scale_ssim_least_side) {
-        result.multi_scale_ssim = multi_scale_ssim(test, reference, range);
+
+    PlaneComparison over(const Image* mask) const {
+        PlaneComparison result;
+        result.plane = plane_;
+        result.errors = pixel_errors(test_, reference_, data_range_, mask);
+        if (ssim_) result.ssim = ssim_->mean(mask);
+        if (is_whole(mask) && multi_scale_ssim_) result.multi_scale_ssim = multi_scale_ssim_->value();
+        if (flip_) result.flip = mean_flip(flip_->map, mask), result.exposures = flip_->exposures;
+        if (settings_.keep_blocks) result.blocks = blocks(result.errors, grid(nullptr), mask);
+        if (settings_.intervals) {
+            result.intervals =
+                measure_intervals(result.blocks && !mask ? *result.blocks : blocks(result.errors, grid(mask), mask),
+                                  result.errors, settings_.referenced.bootstrap);
+        }
+        return result;
     }
-    add_flip(test, reference, flip_range(settings.flip, plane, reference), mask, result);
-    return result;
+
+    // With the halves that the reference has.
+    void add_referenced(const Frame& test, const Frame& reference, const Image* mask, PlaneComparison& result) const {
+        const int samples = samples_of(reference);
+        if (settings_.keep_blocks) result.error_sums = sum_errors(test, reference, plane_, grid(nullptr), mask);
+        if (settings_.intervals) {
+            ReferencedErrorSettings within = settings_.referenced;
+            within.mask = mask;
+            result.referenced = referenced_error(test, reference, plane_, samples, within);
+            return;
+        }
+        const ErrorSums sums =
+            result.error_sums ? *result.error_sums : sum_errors(test, reference, plane_, grid(nullptr), mask);
+        constexpr double none = std::numeric_limits<double>::quiet_NaN();
+        if (sums.values > 0) {
+            result.referenced = referenced_error_of(sums, {mean_of(sums.products), none, none}, samples,
+                                                    settings_.referenced.noise_limit);
+        }
+    }
+
+private:
+    BlockGrid grid(const Image* occupied) const {
+        return {test_.width(), test_.height(), settings_.referenced.bootstrap.block_size, occupied};
+    }
+
+    bool is_whole(const Image* mask) const { return mask == settings_.referenced.mask; }
+
+    MeasureBlocks blocks(const PixelErrors& errors, const BlockGrid& grid, const Image* mask) const {
+        MeasureBlocks blocks = pixel_error_blocks(test_, reference_, errors, grid, mask);
+        if (ssim_) blocks.ssim = ssim_->block_sums(grid, mask);
+        if (is_whole(mask) && multi_scale_ssim_) blocks.ms_ssim = multi_scale_ssim_->block_sums(grid);
+        if (flip_) blocks.flip = block_sums(flip_->map, grid, mask);
+        return blocks;
+    }
+
+    const Image &test_, &reference_;
+    const ComparisonSettings& settings_;
+    std::string plane_;
+    double data_range_ = 0.0;
+    std::optional<SsimMap> ssim_;
+    std::optional<MultiScaleSsim> multi_scale_ssim_;
+    std::optional<FlipMap> flip_;
+};
+
+// Whether any value within the mask is finite on both sides.
+bool has_values(const Image& test, const Image& reference, const Image& mask) {
+    for (int y = 0; y < test.height(); ++y) {
+        for (int x = 0; x < test.width(); ++x) {
+            if (!pixel_counts(&mask, x, y)) continue;
+            for (int c = 0; c < test.channels(); ++c) {
+                if (std::isfinite(test.at(x, y, c)) && std::isfinite(reference.at(x, y, c))) return true;
+            }
+        }
+    }
+    return false;
 }
 
 }  // namespace
@@ -99,40 +163,95 @@ const std::vector<std::string>& measure_names() {
     return names;
 }
 
+const std::vector<std::string>& flip_range_names() {
+    static const std::vector<std::string> names = {"none", "by_plane", "displayed", "radiance"};
+    return names;
+}
+
+std::string to_string(FlipRange range) { return flip_range_names().at(static_cast<std::size_t>(range)); }
+
+std::optional<FlipMap> flip_map(const Image& test, const Image& reference, const ComparisonSettings& settings,
+                                std::string_view plane) {
+    const FlipRange range = flip_range(settings.flip, plane, reference);
+    if (range == FlipRange::displayed) return FlipMap{ldr_flip(test, reference, settings.pixels_per_degree), {}};
+    const bool shows = settings.exposures || value_percentile(reference, 1.0) > 0.0;
+    if (range != FlipRange::radiance || !shows) return std::nullopt;
+    const ExposureRange exposures = settings.exposures ? *settings.exposures : exposure_range(reference);
+    return FlipMap{hdr_flip(test, reference, exposures, settings.pixels_per_degree), exposures};
+}
+
+bool has_interval(std::string_view measure) {
+    constexpr std::array<std::string_view, 16> names = {"mae",
+                                                        "mse",
+                                                        "rmse",
+                                                        "bias",
+                                                        "relative_mse_pbrt",
+                                                        "relative_mse_tev",
+                                                        "relative_mse_falcor",
+                                                        "psnr",
+                                                        "ssim",
+                                                        "ms_ssim",
+                                                        "flip",
+                                                        "median",
+                                                        "p95",
+                                                        "p99",
+                                                        "unbiased_mse",
+                                                        "unbiased_rmse"};
+    return std::ranges::find(names, measure) != names.end();
+}
+
+void set_measure(std::vector<std::pair<std::string, double>>& measures, std::string_view name, double value) {
+    const auto found = std::ranges::find(measures, name, &std::pair<std::string, double>::first);
+    if (found != measures.end()) found->second = value;
+}
+
+void set_referenced(std::vector<std::pair<std::string, double>>& measures, const ReferencedError& error) {
+    const Estimate mse{error.mse, error.lower, error.upper};
+    for (const auto& [name, estimate] :
+         {std::pair<std::string, Estimate>{"unbiased_mse", mse}, {"unbiased_rmse", mse.root()}}) {
+        set_measure(measures, name, estimate.value);
+        set_measure(measures, name + "_lower", estimate.lower);
+        set_measure(measures, name + "_upper", estimate.upper);
+    }
+    set_measure(measures, "reference_noise_mse", error.reference_noise_mse);
+    set_measure(measures, "noise_ratio", error.ratio);
+    set_measure(measures, "trustworthy", error.trustworthy ? 1.0 : 0.0);
+}
+
 std::vector<std::pair<std::string, double>> PlaneComparison::measures() const {
     constexpr double none = std::numeric_limits<double>::quiet_NaN();
-    const auto of_reference = [&](double ReferencedError::*member) {
-        return referenced ? (*referenced).*member : none;
+    std::vector<std::pair<std::string, double>> list;
+    const auto add = [&](const char* name, double value) {
+        list.emplace_back(name, value);
+        if (!has_interval(name)) return;
+        const Estimate estimate = intervals.of(name);
+        list.emplace_back(fmt::format("{}_lower", name), estimate.lower);
+        list.emplace_back(fmt::format("{}_upper", name), estimate.upper);
     };
-    return {
-        {"mae", errors.mae},
-        {"mse", errors.mse},
-        {"rmse", errors.rmse},
-        {"bias", errors.bias},
-        {"relative_mse_pbrt", errors.relative_mse_pbrt},
-        {"relative_mse_tev", errors.relative_mse_tev},
-        {"relative_mse_falcor", errors.relative_mse_falcor},
-        {"psnr", errors.psnr},
-        {"ssim", ssim ? ssim->mean : none},
-        {"ms_ssim", multi_scale_ssim.value_or(none)},
-        {"flip", flip.value_or(none)},
-        {"flip_first_exposure", exposures ? exposures->first : none},
-        {"flip_last_exposure", exposures ? exposures->last : none},
-        {"median", errors.median},
-        {"p95", errors.percentile_95},
-        {"p99", errors.percentile_99},
-        {"maximum", errors.maximum},
-        {"data_range", errors.peak},
-        {"values", static_cast<double>(errors.values)},
-        {"left_out", static_cast<double>(errors.left_out)},
-        {"unbiased_mse", of_reference(&ReferencedError::mse)},
-        {"unbiased_mse_lower", of_reference(&ReferencedError::lower)},
-        {"unbiased_mse_upper", of_reference(&ReferencedError::upper)},
-        {"unbiased_rmse", referenced ? std::sqrt(std::max(referenced->mse, 0.0)) : none},
-        {"reference_noise_mse", of_reference(&ReferencedError::reference_noise_mse)},
-        {"noise_ratio", of_reference(&ReferencedError::ratio)},
-        {"trustworthy", referenced ? (referenced->trustworthy ? 1.0 : 0.0) : none},
-    };
+    add("mae", errors.mae);
+    add("mse", errors.mse);
+    add("rmse", errors.rmse);
+    add("bias", errors.bias);
+    add("relative_mse_pbrt", errors.relative_mse_pbrt);
+    add("relative_mse_tev", errors.relative_mse_tev);
+    add("relative_mse_falcor", errors.relative_mse_falcor);
+    add("psnr", errors.psnr);
+    add("ssim", ssim ? ssim->mean : none);
+    add("ms_ssim", multi_scale_ssim.value_or(none));
+    add("flip", flip.value_or(none));
+    add("flip_first_exposure", exposures ? exposures->first : none);
+    add("flip_last_exposure", exposures ? exposures->last : none);
+    add("median", errors.median);
+    add("p95", errors.percentile_95);
+    add("p99", errors.percentile_99);
+    add("maximum", errors.maximum);
+    add("data_range", errors.peak);
+    add("values", static_cast<double>(errors.values));
+    add("left_out", static_cast<double>(errors.left_out));
+    for (const char* name : {"unbiased_mse", "unbiased_rmse", "reference_noise_mse", "noise_ratio", "trustworthy"})
+        add(name, none);
+    if (referenced) set_referenced(list, *referenced);
+    return list;
 }
 
 double PlaneComparison::measure(std::string_view name) const {
@@ -144,28 +263,47 @@ double PlaneComparison::measure(std::string_view name) const {
 
 PlaneComparison compare_planes(const Image& test, const Image& reference, const ComparisonSettings& settings,
                                std::string_view plane) {
-    return compare(test, reference, settings, plane);
+    return PlaneMeasurement(test, reference, settings, plane).over(settings.referenced.mask);
 }
 
-FrameComparison compare_frames(const Frame& test, const Frame& reference, const ComparisonSettings& settings) {
+std::vector<PlaneComparison> compare_plane(const Frame& test, const Frame& reference, const std::string& plane,
+                                           const ComparisonSettings& settings, const std::vector<Region>& regions) {
+    const Image &image = test.plane(plane), &truth = reference.plane(plane);
+    const PlaneMeasurement measurement(image, truth, settings, plane);
+    std::vector<PlaneComparison> comparisons;
+    const auto add = [&](const std::string& region, std::size_t pixels, const Image* mask) {
+        PlaneComparison& comparison = comparisons.emplace_back(measurement.over(mask));
+        comparison.region = region, comparison.pixels = pixels;
+        if (has_halves(reference, plane)) measurement.add_referenced(test, reference, mask, comparison);
+    };
+    add("", image.pixel_count(), settings.referenced.mask);
+    for (const Region& region : regions) {
+        require_mask_fits(region.mask, image);
+        if (region.pixels > 0 && has_values(image, truth, region.mask)) add(region.name, region.pixels, &region.mask);
+    }
+    return comparisons;
+}
+
+PlanePairs pair_planes(const Frame& test, const Frame& reference) {
     const auto in_test = planes_to_compare(test), in_reference = planes_to_compare(reference);
-    FrameComparison result;
-    std::vector<std::string> common;
-    std::ranges::set_intersection(in_test, in_reference, std::back_inserter(common));
-    std::ranges::set_difference(in_test, in_reference, std::back_inserter(result.only_in_test));
-    std::ranges::set_difference(in_reference, in_test, std::back_inserter(result.only_in_reference));
-    if (common.empty()) {
+    PlanePairs pairs;
+    std::ranges::set_intersection(in_test, in_reference, std::back_inserter(pairs.common));
+    std::ranges::set_difference(in_test, in_reference, std::back_inserter(pairs.only_in_test));
+    std::ranges::set_difference(in_reference, in_test, std::back_inserter(pairs.only_in_reference));
+    if (pairs.common.empty()) {
         throw ImageError(fmt::format("the frames have no plane in common: {} against {} in the reference",
                                      fmt::join(in_test, ", "), fmt::join(in_reference, ", ")));
     }
-    const int samples = samples_of(reference);
-    for (const std::string& plane : common) {
-        auto& comparison =
-            result.planes.emplace_back(compare(test.plane(plane), reference.plane(plane), settings, plane));
-        if (reference.has("half_a." + plane) && reference.has("half_b." + plane)) {
-            comparison.referenced = referenced_error(test, reference, plane, samples, settings.referenced);
-        }
-    }
+    return pairs;
+}
+
+FrameComparison compare_frames(const Frame& test, const Frame& reference, const ComparisonSettings& settings) {
+    PlanePairs pairs = pair_planes(test, reference);
+    FrameComparison result;
+    for (const std::string& plane : pairs.common)
+        result.planes.push_back(std::move(compare_plane(test, reference, plane, settings).front()));
+    result.only_in_test = std::move(pairs.only_in_test);
+    result.only_in_reference = std::move(pairs.only_in_reference);
     return result;
 }
 

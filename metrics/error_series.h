@@ -22,6 +22,8 @@ enum class SeriesOf {
     frames,  // consecutive: neighbours are alike, and are drawn in runs
     seeds,   // independent of each other
 };
+// As BlockSeries takes it.
+constexpr std::size_t longest_run(SeriesOf kind) { return kind == SeriesOf::frames ? 8 : 1; }
 
 class ErrorSeries {
 public:
@@ -32,6 +34,9 @@ public:
     // differ within the series.
     std::optional<ReferencedError> add(const Frame& method, const Frame& reference, std::string_view plane,
                                        int reference_samples, const Image* mask = nullptr);
+
+    // The same of sums over a grid without a mask, which all members share.
+    void add(ErrorSums sums, int reference_samples);
 
     std::size_t members() const { return errors_.size(); }
     // Over all members. Throws ImageError where there is none.

@@ -10,6 +10,7 @@
 #include "frames/image_error.h"
 #include "frames/parallel.h"
 #include "metrics/error_image.h"
+#include "metrics/referenced_error.h"
 #include "metrics/shape.h"
 
 namespace plumb {
@@ -48,8 +49,8 @@ void require_motion_planes(const FrameErrors& frame, int width, int height) {
 
 FrameErrors FrameErrors::of(const Frame& method, const Frame& truth, std::string_view plane) {
     FrameErrors frame;
-    const std::string name(plane), a = fmt::format("half_a.{}", plane), b = fmt::format("half_b.{}", plane);
-    const bool halves = truth.has(a) && truth.has(b), paired = halves && method.has(a) && method.has(b);
+    const std::string name(plane), a = half_a_of(plane), b = half_b_of(plane);
+    const bool halves = has_halves(truth, plane), paired = halves && has_halves(method, plane);
     frame.method = method.plane(paired ? a : name);
     if (paired) frame.second_half = method.plane(b);
     const auto error = [&](const Image& image, const std::string& of_truth) {

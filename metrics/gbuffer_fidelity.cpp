@@ -13,13 +13,12 @@
 #include "frames/image_error.h"
 #include "metrics/pixel_errors.h"
 #include "metrics/shape.h"
+#include "metrics/surface_motion.h"
 
 namespace plumb {
 namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
-
-bool is_surface(float depth) { return std::isfinite(depth) && depth > 0.0f; }
 
 double relative_difference(std::span<const float> test, std::span<const float> reference) {
     return std::abs(double{test[0]} - reference[0]) / reference[0];

@@ -2,8 +2,7 @@
 //
 //   hit_agreement   share of pixels where both hold a surface or both hold none (depth finite and above zero)
 //   agreement       share of pixels where that is so and, where both hold a surface, depth, normal and albedo are
-//   within
-//                   their tolerances
+//                   within their tolerances
 //   depth_error     |z - r| / r
 //   normal_angle    degrees between the normals
 //   albedo_error    largest difference of a channel

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -22,7 +23,7 @@ public:
         const auto position = now.position.pixel(x, y);
         position_ = {position[0], position[1], position[2]};
         const double depth = now.depth.at(x, y);
-        visible_ = std::isfinite(depth) && depth > 0.0;
+        visible_ = is_surface(depth);
         if (visible_) radius_ = same_surface_radius(now.position, depth, x, y, tolerance);
         motion_ = {now.motion.at(x, y, 0), now.motion.at(x, y, 1)};
     }
@@ -68,6 +69,49 @@ private:
 };
 
 }  // namespace
+
+std::vector<std::pair<std::string, double>> PathStabilityResult::measures() const {
+    std::vector<std::pair<std::string, double>> list;
+    for (const auto& [name, estimate] : {std::pair<std::string, Estimate>{"flicker", flicker},
+                                         {"method_warping", method_warping},
+                                         {"truth_warping", truth_warping},
+                                         {"temporal_variance", temporal_variance}}) {
+        list.emplace_back(name, estimate.value);
+        list.emplace_back(name + "_lower", estimate.lower);
+        list.emplace_back(name + "_upper", estimate.upper);
+    }
+    list.emplace_back("flicker_noise", noise);
+    list.emplace_back("flicker_trustworthy", trustworthy ? 1.0 : 0.0);
+    return list;
+}
+
+double PathStabilityResult::measure(std::string_view name) const {
+    for (const auto& [known, value] : measures()) {
+        if (known == name) return value;
+    }
+    return std::numeric_limits<double>::quiet_NaN();
+}
+
+bool PathStabilityResult::tells(std::string_view name) const {
+    if (name.starts_with("temporal_variance")) return noise == 0.0 || temporal_variance.lower > 0.0;
+    return !name.starts_with("flicker") || trustworthy;
+}
+
+std::optional<std::int64_t> PathStabilityResult::samples_needed(int reference_samples) const {
+    const double most = flicker.value > 0.0 ? flicker.value : flicker.upper;
+    if (reference_samples <= 0 || !(most > 0.0) || !std::isfinite(most)) return std::nullopt;
+    const double samples = reference_samples * noise * noise / (noise_limit * most * most);
+    return 2 * static_cast<std::int64_t>(std::ceil(std::max(samples, 2.0) / 2.0));
+}
+
+const std::vector<std::string>& stability_names() {
+    static const std::vector<std::string> names = [] {
+        std::vector<std::string> list;
+        for (const auto& [name, value] : PathStabilityResult{}.measures()) list.push_back(name);
+        return list;
+    }();
+    return names;
+}
 
 PathStability::PathStability(std::string plane, const PathStabilitySettings& settings)
     : plane_(std::move(plane)), settings_(settings) {
@@ -160,7 +204,7 @@ PathStabilityResult PathStability::result_of(const Sums& sums) const {
     result.truth_warping = sums.truth.mean(bootstrap).root();
     result.temporal_variance = sums.variance.mean(bootstrap);
     const double noise = sums.noise.mean(bootstrap).value;
-    result.noise = std::sqrt(noise);
+    result.noise = std::sqrt(noise), result.noise_limit = settings_.noise_limit;
     result.trustworthy = noise == 0.0 || (noise <= settings_.noise_limit * squared.value && squared.lower > 0.0);
     result.pixels = sums.pixels, result.not_visible = sums.not_visible, result.non_finite = sums.non_finite;
     return result;

@@ -20,10 +20,13 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <deque>
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "frames/frame.h"
@@ -44,11 +47,27 @@ struct PathStabilityResult {
     Estimate flicker, method_warping, truth_warping;
     Estimate temporal_variance;  // a square; NaN where no point was visible throughout a window
     double noise = 0;            // RMS change that the truth's noise would add
+    double noise_limit = 0.1;    // as the settings have it
     // The noise's share of the squared flicker is within the limit and the interval excludes zero, or there is no
     // noise.
     bool trustworthy = false;
     std::size_t pixels = 0, not_visible = 0, non_finite = 0;  // over all pairs of frames
+
+    // All measures under fixed names in a fixed order, intervals as NAME_lower and NAME_upper: flicker, method_warping,
+    // truth_warping, temporal_variance, flicker_noise, flicker_trustworthy (1 or 0).
+    std::vector<std::pair<std::string, double>> measures() const;
+    // NaN where no measure has the name.
+    double measure(std::string_view name) const;
+    // Whether the truth's noise leaves a measure to be told: of flicker, that it is trustworthy; of temporal variance,
+    // that the interval excludes zero; warping errors, in which noise cancels, always.
+    bool tells(std::string_view name) const;
+    // Samples per pixel (even) of the truth with which the noise would be within the limit, where it has
+    // `reference_samples` now; none where that cannot be said.
+    std::optional<std::int64_t> samples_needed(int reference_samples) const;
 };
+
+// The names that measures() uses, in its order.
+const std::vector<std::string>& stability_names();
 
 class PathStability {
 public:

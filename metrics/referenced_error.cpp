@@ -23,6 +23,13 @@ void require_settings(const ReferencedErrorSettings& settings) {
 
 }  // namespace
 
+std::string half_a_of(std::string_view plane) { return fmt::format("half_a.{}", plane); }
+std::string half_b_of(std::string_view plane) { return fmt::format("half_b.{}", plane); }
+
+bool has_halves(const Frame& frame, std::string_view plane) {
+    return frame.has(half_a_of(plane)) && frame.has(half_b_of(plane));
+}
+
 std::optional<std::int64_t> ReferencedError::samples_needed() const {
     const double error = mse > 0.0 ? mse : upper;
     if (reference_samples <= 0 || !(error > 0.0)) return std::nullopt;
@@ -100,12 +107,21 @@ ReferencedError paired_referenced_error(const Image& test_a, const Image& test_b
                                settings.noise_limit);
 }
 
+ErrorSums sum_errors(const Frame& method, const Frame& reference, std::string_view plane, const BlockGrid& grid,
+                     const Image* mask) {
+    const std::string name(plane), a = half_a_of(plane), b = half_b_of(plane);
+    const bool paired = has_halves(method, plane);
+    return sum_errors(method.plane(paired ? a : name), method.plane(paired ? b : name), reference.plane(a),
+                      reference.plane(b), grid, mask);
+}
+
 ReferencedError referenced_error(const Frame& method, const Frame& reference, std::string_view plane,
                                  int reference_samples, const ReferencedErrorSettings& settings) {
-    const std::string name(plane), a = fmt::format("half_a.{}", plane), b = fmt::format("half_b.{}", plane);
-    const bool paired = method.has(a) && method.has(b);
-    return paired_referenced_error(method.plane(paired ? a : name), method.plane(paired ? b : name), reference.plane(a),
-                                   reference.plane(b), reference_samples, settings);
+    require_settings(settings);
+    const BlockGrid grid(method.width(), method.height(), settings.bootstrap.block_size, settings.mask);
+    const ErrorSums sums = sum_errors(method, reference, plane, grid, settings.mask);
+    return referenced_error_of(sums, bootstrap_mean(sums.products, settings.bootstrap), reference_samples,
+                               settings.noise_limit);
 }
 
 }  // namespace plumb

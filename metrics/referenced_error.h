@@ -32,6 +32,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -39,6 +40,11 @@
 #include "metrics/block_bootstrap.h"
 
 namespace plumb {
+
+// What the independent halves of a plane are called, and whether a frame has both.
+std::string half_a_of(std::string_view plane);
+std::string half_b_of(std::string_view plane);
+bool has_halves(const Frame& frame, std::string_view plane);
 
 struct ReferencedErrorSettings {
     double noise_limit = 0.1;  // largest share of the error that the noise may have
@@ -89,6 +95,9 @@ struct ErrorSums {
 // Throws as paired_referenced_error, but not for having nothing to compare.
 ErrorSums sum_errors(const Image& test_a, const Image& test_b, const Image& half_a, const Image& half_b,
                      const BlockGrid& grid, const Image* mask = nullptr);
+// The same of a plane of two frames, paired as referenced_error() pairs them.
+ErrorSums sum_errors(const Frame& method, const Frame& reference, std::string_view plane, const BlockGrid& grid,
+                     const Image* mask = nullptr);
 // `mse` is the mean of the products with its interval. Throws ImageError where nothing was compared.
 ReferencedError referenced_error_of(const ErrorSums& sums, const Estimate& mse, int reference_samples,
                                     double noise_limit);

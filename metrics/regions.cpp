@@ -12,8 +12,6 @@
 namespace plumb {
 namespace {
 
-bool is_surface(float depth) { return std::isfinite(depth) && depth > 0.0f; }
-
 // Reads depth and normal of a G-buffer and finds pixels at edges.
 class EdgeFinder {
 public:

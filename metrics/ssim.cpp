@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <span>
 #include <vector>
@@ -55,8 +54,6 @@ struct Channel {
     int width, height;
     std::vector<float> values;
 };
-
-enum class SsimPart { all, contrast_and_structure };
 
 // Computes single rows of SSIM; owns the scratch memory of one thread. Filters down the columns first, which needs no
 // more than one row of the five moments at a time.
@@ -138,58 +135,6 @@ void check(const Image& test, const Image& reference, double data_range) {
     }
 }
 
-// Calls use(channel, y, values of the row) for every row of every channel, from many threads.
-void for_each_row(const Image& test, const Image& reference, double data_range, SsimPart part,
-                  const std::function<void(int, int, std::span<const double>)>& use) {
-    for (int c = 0; c < test.channels(); ++c) {
-        const Channel v(test, c), r(reference, c);
-        constexpr int rows_at_once = 16;  // whose filter starts anew
-        parallel_for((test.height() + rows_at_once - 1) / rows_at_once, [&](int block) {
-            RowFilter filter(test.width(), data_range);
-            std::vector<double> row(static_cast<std::size_t>(test.width()));
-            const int end = std::min(test.height(), (block + 1) * rows_at_once);
-            for (int y = block * rows_at_once; y < end; ++y) {
-                filter.run(v, r, y, part, row);
-                use(c, y, row);
-            }
-        });
-    }
-}
-
-Ssim mean_over_windows(const Image& test, const Image& reference, double data_range, SsimPart part, const Image* mask) {
-    struct Row {
-        double sum = 0;
-        std::size_t windows = 0, non_finite = 0;
-    };
-    // Summed per row first and in order of the rows afterwards: the same bits whatever the number of threads.
-    std::vector<Row> rows(static_cast<std::size_t>(test.height()) * static_cast<std::size_t>(test.channels()));
-    for_each_row(test, reference, data_range, part, [&](int c, int y, std::span<const double> values) {
-        if (y < radius || y >= test.height() - radius) return;
-        Row& row =
-            rows[static_cast<std::size_t>(c) * static_cast<std::size_t>(test.height()) + static_cast<std::size_t>(y)];
-        for (int x = radius; x < test.width() - radius; ++x) {
-            if (!pixel_counts(mask, x, y)) continue;
-            if (const double value = values[static_cast<std::size_t>(x)]; std::isfinite(value)) {
-                row.sum += value;
-                ++row.windows;
-            } else {
-                ++row.non_finite;
-            }
-        }
-    });
-    Ssim result;
-    result.data_range = data_range;
-    double sum = 0;
-    for (const Row& row : rows) {
-        sum += row.sum;
-        result.windows += row.windows;
-        result.non_finite_windows += row.non_finite;
-    }
-    result.mean =
-        result.windows > 0 ? sum / static_cast<double>(result.windows) : std::numeric_limits<double>::quiet_NaN();
-    return result;
-}
-
 // Means of two by two pixels; an odd last row or column is dropped.
 Image half_size(const Image& image) {
     Image half(image.width() / 2, image.height() / 2, image.channels());
@@ -206,39 +151,118 @@ Image half_size(const Image& image) {
 
 }  // namespace
 
-Ssim ssim(const Image& test, const Image& reference, double data_range, const Image* mask) {
+SsimMap::SsimMap(const Image& test, const Image& reference, double data_range, SsimPart part)
+    : width_(test.width()), height_(test.height()), channels_(test.channels()), data_range_(data_range) {
     check(test, reference, data_range);
-    if (mask) require_mask_fits(*mask, test);
-    return mean_over_windows(test, reference, data_range, SsimPart::all, mask);
+    values_.resize(test.values().size());
+    for (int c = 0; c < channels_; ++c) {
+        const Channel v(test, c), r(reference, c);
+        constexpr int rows_at_once = 16;  // whose filter starts anew
+        parallel_for((height_ + rows_at_once - 1) / rows_at_once, [&](int block) {
+            RowFilter filter(width_, data_range);
+            const int end = std::min(height_, (block + 1) * rows_at_once);
+            for (int y = block * rows_at_once; y < end; ++y)
+                filter.run(v, r, y, part, {values_.data() + index(0, y, c), static_cast<std::size_t>(width_)});
+        });
+    }
 }
 
-double multi_scale_ssim(const Image& test, const Image& reference, double data_range) {
+// Calls use(x, y, value) for every window that lies within the image and whose centre counts.
+template <typename Use>
+void SsimMap::for_each_window(const Image* mask, const Use& use) const {
+    if (mask) require_mask_fits(*mask, Image(width_, height_, 1));
+    for (int c = 0; c < channels_; ++c) {
+        for (int y = radius; y < height_ - radius; ++y) {
+            for (int x = radius; x < width_ - radius; ++x) {
+                if (pixel_counts(mask, x, y)) use(x, y, values_[index(x, y, c)]);
+            }
+        }
+    }
+}
+
+Ssim SsimMap::mean(const Image* mask) const {
+    Ssim result;
+    result.data_range = data_range_;
+    double sum = 0;
+    for_each_window(mask, [&](int, int, double value) {
+        const bool finite = std::isfinite(value);
+        sum += finite ? value : 0.0;
+        ++(finite ? result.windows : result.non_finite_windows);
+    });
+    result.mean =
+        result.windows > 0 ? sum / static_cast<double>(result.windows) : std::numeric_limits<double>::quiet_NaN();
+    return result;
+}
+
+std::vector<BlockSum> SsimMap::block_sums(const BlockGrid& grid, const Image* mask, int scale) const {
+    std::vector<BlockSum> blocks(grid.count());
+    for_each_window(mask, [&](int x, int y, double value) {
+        if (std::isfinite(value)) blocks[grid.block_of(x * scale, y * scale)].add(value);
+    });
+    return blocks;
+}
+
+Image SsimMap::image() const {
+    Image map(width_, height_, channels_);
+    for (int c = 0; c < channels_; ++c) {
+        for (int y = 0; y < height_; ++y) {
+            for (int x = 0; x < width_; ++x) map.at(x, y, c) = static_cast<float>(values_[index(x, y, c)]);
+        }
+    }
+    return map;
+}
+
+MultiScaleSsim::MultiScaleSsim(const Image& test, const Image& reference, double data_range) {
     check(test, reference, data_range);
     if (std::min(test.width(), test.height()) < multi_scale_ssim_least_side) {
         throw ImageError(fmt::format("multi-scale SSIM needs images of at least {0}x{0} pixels, not {1}x{2}",
                                      multi_scale_ssim_least_side, test.width(), test.height()));
     }
     Image v = test, r = reference;
-    double product = 1.0;
     for (std::size_t scale = 0; scale < scale_weights.size(); ++scale) {
         const bool last = scale + 1 == scale_weights.size();
-        const SsimPart part = last ? SsimPart::all : SsimPart::contrast_and_structure;
-        product *=
-            std::pow(std::max(0.0, mean_over_windows(v, r, data_range, part, nullptr).mean), scale_weights[scale]);
+        maps_.emplace_back(v, r, data_range, last ? SsimPart::all : SsimPart::contrast_and_structure);
+        means_.push_back(maps_.back().mean().mean);
         if (!last) v = half_size(v), r = half_size(r);
     }
+}
+
+double MultiScaleSsim::value() const {
+    double product = 1.0;
+    for (std::size_t scale = 0; scale < means_.size(); ++scale)
+        product *= std::pow(std::max(0.0, means_[scale]), scale_weights[scale]);
     return product;
 }
 
-Image ssim_map(const Image& test, const Image& reference, double data_range) {
-    check(test, reference, data_range);
-    Image map(test.width(), test.height(), test.channels());
-    for_each_row(test, reference, data_range, SsimPart::all, [&](int c, int y, std::span<const double> values) {
-        for (int x = 0; x < test.width(); ++x) {
-            map.at(x, y, c) = static_cast<float>(values[static_cast<std::size_t>(x)]);
+std::vector<BlockSum> MultiScaleSsim::block_sums(const BlockGrid& grid) const {
+    std::vector<BlockSum> blocks = maps_.front().block_sums(grid);
+    double windows = 0.0;
+    for (const BlockSum& block : blocks) windows += static_cast<double>(block.values);
+    const double whole = value();
+    for (BlockSum& block : blocks) block.sum = whole * static_cast<double>(block.values);
+    int pixels = 1;
+    for (std::size_t scale = 0; scale < maps_.size(); ++scale, pixels *= 2) {
+        // The mean at this scale, if a block were drawn once more, moves the product by its share of the power.
+        const std::vector<BlockSum> of_scale = maps_[scale].block_sums(grid, nullptr, pixels);
+        double of_all = 0.0;
+        for (const BlockSum& block : of_scale) of_all += static_cast<double>(block.values);
+        const double mean = std::max(means_[scale], 1e-9);  // a product of zero moves nowhere
+        for (std::size_t b = 0; b < blocks.size(); ++b) {
+            const double excess = of_scale[b].sum - means_[scale] * static_cast<double>(of_scale[b].values);
+            blocks[b].sum += whole * scale_weights[scale] * windows * excess / (of_all * mean);
         }
-    });
-    return map;
+    }
+    return blocks;
+}
+
+Ssim ssim(const Image& test, const Image& reference, double data_range, const Image* mask) {
+    check(test, reference, data_range);
+    if (mask) require_mask_fits(*mask, test);
+    return SsimMap(test, reference, data_range).mean(mask);
+}
+
+double multi_scale_ssim(const Image& test, const Image& reference, double data_range) {
+    return MultiScaleSsim(test, reference, data_range).value();
 }
 
 }  // namespace plumb

@@ -15,8 +15,10 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
 #include "frames/image.h"
+#include "metrics/block_bootstrap.h"
 
 namespace plumb {
 
@@ -47,7 +49,47 @@ Ssim ssim(const Image& test, const Image& reference, double data_range, const Im
 inline constexpr int multi_scale_ssim_least_side = ssim_window * 16;
 double multi_scale_ssim(const Image& test, const Image& reference, double data_range);
 
-// SSIM at every pixel and channel, borders included; NaN where the window holds a value that is not finite.
-Image ssim_map(const Image& test, const Image& reference, double data_range);
+enum class SsimPart { all, contrast_and_structure };
+
+// SSIM, or its second factor alone, at every pixel and channel, borders included: made once, and read over as many
+// masks as wanted. NaN where the window holds a value that is not finite. Throws ImageError as ssim does.
+class SsimMap {
+public:
+    SsimMap(const Image& test, const Image& reference, double data_range, SsimPart part = SsimPart::all);
+
+    Ssim mean(const Image* mask = nullptr) const;
+    // Of the windows that mean() runs over. `scale` pixels of the grid's image in a row make one of this one's.
+    std::vector<BlockSum> block_sums(const BlockGrid& grid, const Image* mask = nullptr, int scale = 1) const;
+    Image image() const;
+
+private:
+    std::size_t index(int x, int y, int channel) const {
+        return (static_cast<std::size_t>(channel) * static_cast<std::size_t>(height_) + static_cast<std::size_t>(y)) *
+                   static_cast<std::size_t>(width_) +
+               static_cast<std::size_t>(x);
+    }
+    template <typename Use>
+    void for_each_window(const Image* mask, const Use& use) const;
+
+    int width_, height_, channels_;
+    double data_range_;
+    std::vector<double> values_;  // channel after channel
+};
+
+// The maps of all scales, for multi_scale_ssim() and its interval. Throws ImageError as that does.
+class MultiScaleSsim {
+public:
+    MultiScaleSsim(const Image& test, const Image& reference, double data_range);
+
+    double value() const;
+    // Sums whose mean over all blocks is value(), and which move with a block that is drawn again as value() does, to
+    // first order (the delta method). Windows of the coarser scales are wider than most blocks, so that intervals made
+    // of these are too narrow where the differences lie there.
+    std::vector<BlockSum> block_sums(const BlockGrid& grid) const;
+
+private:
+    std::vector<SsimMap> maps_;  // the finest first
+    std::vector<double> means_;
+};
 
 }  // namespace plumb

@@ -82,7 +82,7 @@ std::optional<BilinearPlace> place_before(const Image& motion, const Image& dept
     const bool inside =
         before_x > -1.0 && before_x < position_before.width() && before_y > -1.0 && before_y < position_before.height();
     const double distance = depth.at(x, y);
-    if (!inside || !std::isfinite(distance) || !(distance > 0.0)) return std::nullopt;
+    if (!inside || !is_surface(distance)) return std::nullopt;
     const BilinearPlace place = BilinearPlace::at(before_x, before_y);
     const auto own = position.pixel(x, y);
     const double radius = same_surface_radius(position, distance, x, y, tolerance);

@@ -8,11 +8,15 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <optional>
 
 #include "frames/frame.h"
 
 namespace plumb {
+
+// Whether a pixel with this depth shows a surface at all.
+inline bool is_surface(double depth) { return std::isfinite(depth) && depth > 0.0; }
 
 // The four pixels of a bilinear look-up and their weights; those of weight 0 may lie outside the image.
 struct BilinearPlace {

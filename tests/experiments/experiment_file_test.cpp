@@ -42,6 +42,15 @@ TEST(ExperimentFile, TheShippedExperimentIsValid) {
     EXPECT_EQ(experiment.methods.size(), 2u);
 }
 
+TEST(ExperimentFile, SaysWhichFlipIsMeasuredAndOnWhatScreen) {
+    EXPECT_EQ(parse(valid).measures.flip, FlipRange::by_plane);
+    const Experiment experiment = parse("measures = { flip = \"none\", pixels_per_degree = 40 }\n" + valid);
+    EXPECT_EQ(experiment.measures.flip, FlipRange::none);
+    EXPECT_EQ(experiment.measures.pixels_per_degree, 40.0);
+    EXPECT_THAT(parse_failure("measures = { flip = \"displayd\" }\n" + valid),
+                AllOf(HasSubstr("no range 'displayd'"), HasSubstr("did you mean 'displayed'?")));
+}
+
 TEST(ExperimentFile, AGateIsAnExperimentTooWhoseLimitsARunLeavesAlone) {
     const Experiment gate = load_experiment(PLUMBLINE_SOURCE_DIR "/experiments/ci.toml");
     EXPECT_FALSE(gate.methods.empty());

@@ -102,7 +102,7 @@ inline RunResults full_sample(const std::filesystem::path& folder) {
     for (const std::string method : {"one", "two"}) {
         ResultRow row = sample_row("", method, 0.07, 3.0);
         row.path = "orbit";
-        row.stability = Stability{method == "one" ? 0.04 : 0.01, 0.009, 0.045, 0.05, 0.02, 0.001};
+        row.stability = sample_stability(method == "one" ? 0.04 : 0.01);
         results.rows.push_back(row);
     }
     ResultRow refused = sample_row("left", "noisy", 0.1, 9.0);

@@ -25,6 +25,16 @@ inline ResultRow sample_row(const std::string& view, const std::string& method, 
     return row;
 }
 
+// Told beyond doubt, each interval a tenth to either side.
+inline PathStabilityResult sample_stability(double flicker) {
+    const auto about = [](double value) { return Estimate{value, 0.9 * value, 1.1 * value}; };
+    PathStabilityResult stability;
+    stability.flicker = about(flicker), stability.trustworthy = true;
+    stability.method_warping = about(0.5), stability.truth_warping = about(0.4);
+    stability.temporal_variance = about(0.01);
+    return stability;
+}
+
 // Two methods on three views: the second has half the error and takes twice the time.
 inline RunResults sample_results() {
     RunResults results;

@@ -96,8 +96,12 @@ TEST(Thresholds, MistakesAreReportedWithTheirLine) {
                 AllOf(HasSubstr("t.toml:6"), HasSubstr("must be a number or \"calibrate\"")));
     EXPECT_THAT(parse_failure(valid + "measure = \"rsme\"\n"),
                 AllOf(HasSubstr("t.toml:8"), HasSubstr("did you mean 'rmse'?")));
-    EXPECT_THAT(parse_failure(valid + "region = \"border\"\nmeasure = \"ssim\"\n"),
-                AllOf(HasSubstr("t.toml:8"), HasSubstr("rmse, mse, flicker")));
+    EXPECT_THAT(parse_failure(valid + "region = \"boarder\"\nmeasure = \"ssim\"\n"),
+                AllOf(HasSubstr("t.toml:8"), HasSubstr("did you mean 'border'?")));
+    EXPECT_THAT(parse_failure(valid + "region = \"border\"\nmeasure = \"ms_ssim\"\n"),
+                AllOf(HasSubstr("t.toml:8"), HasSubstr("such as ssim")));
+    EXPECT_THAT(parse_failure(valid + "region = \"border\"\nmeasure = \"normal_angle_mean\"\n"),
+                HasSubstr("only measured over whole views"));
     EXPECT_THAT(parse_failure(with_line(3, "kind = \"benefit\"")), HasSubstr("'relative_to' is missing"));
     EXPECT_THAT(parse_failure(with_line(3, "kind = \"cost\"\nmeasure = \"rmse\"")),
                 AllOf(HasSubstr("t.toml:4"), HasSubstr("unknown key")));

@@ -44,7 +44,7 @@ std::vector<ResultRow> rows_of_three_views() {
 ResultRow path_row(const std::string& method, double flicker) {
     ResultRow row = sample_row("", method, 0.1, 0.0);
     row.path = "strafe";
-    row.stability = Stability{flicker, 0.9 * flicker, 1.1 * flicker, 0.5, 0.4, 0.01};
+    row.stability = sample_stability(flicker);
     return row;
 }
 
@@ -132,7 +132,7 @@ TEST(Verdicts, RowsOfPathsAndViewsAreToldApart) {
     EXPECT_EQ(verdict.value.place, "cornell / strafe");
     EXPECT_EQ(verdict_of(limit_of(ThresholdKind::error, "two", 1.0), rows).value.rows, 3);
     flicker.region = "silhouettes";
-    rows.back().regions.push_back({"silhouettes", 100, 0.01, 0.009, 0.011, Stability{.flicker = 0.05}});
+    rows.back().regions.push_back({"silhouettes", 100, 0.01, 0.009, 0.011, sample_stability(0.05)});
     rows.back().regions.push_back({"border", 100, 0.01, 0.009, 0.011});
     EXPECT_EQ(*verdict_of(flicker, rows).value.value, 0.05);
     flicker.region = "border";
@@ -141,6 +141,24 @@ TEST(Verdicts, RowsOfPathsAndViewsAreToldApart) {
     flicker.kind = ThresholdKind::benefit, flicker.relative_to = "one", flicker.limit = 0.7;
     rows.push_back(path_row("one", 0.06));
     EXPECT_NEAR(*verdict_of(flicker, rows).value.value, 0.5, 1e-12);
+}
+
+TEST(Verdicts, FlickerThatTheTruthsNoiseDrownsIsUntoldWithTheSamplesThatWouldDo) {
+    std::vector<ResultRow> rows = {path_row("two", 0.03)};
+    Threshold flicker = limit_of(ThresholdKind::flicker, "two", 0.1);
+    flicker.measure = "flicker", flicker.rows.view = "", flicker.rows.path = "*";
+    EXPECT_EQ(verdict_of(flicker, rows).status, VerdictStatus::kept);
+    // Noise of the same size: its square has to fall to a tenth, so ten times as many samples as 64.
+    rows[0].stability->noise = 0.03, rows[0].stability->trustworthy = false;
+    const Verdict verdict = verdict_of(flicker, rows);
+    EXPECT_EQ(verdict.status, VerdictStatus::untold);
+    EXPECT_THAT(verdict.message, AllOf(HasSubstr("too near to the flicker"), HasSubstr("640 samples per pixel")));
+    flicker.measure = "method_warping", flicker.limit = 0.6;
+    EXPECT_EQ(*verdict_of(flicker, rows).value.value, 0.5) << "of images alone: no noise of the truth in it";
+    flicker.measure = "temporal_variance";
+    EXPECT_EQ(*verdict_of(flicker, rows).value.value, 0.01) << "its interval excludes zero";
+    rows[0].stability->temporal_variance.lower = -0.01;
+    EXPECT_EQ(verdict_of(flicker, rows).status, VerdictStatus::untold);
 }
 
 TEST(Verdicts, TruthsAreToldApartAndPlanesWithOneMatchAny) {
@@ -168,6 +186,8 @@ TEST(Verdicts, RegionsHaveTheirOwnError) {
     std::vector<ResultRow> rows = {sample_row("front", "two", 0.1, 1.0)};
     rows[0].regions = {
         {"silhouettes", 100, 0.25, 0.2, 0.3}, {"border", 0, 0.0, 0.0, 0.0}, {"rest", 9, 0.01, -0.1, 0.2}};
+    rows[0].regions[2].measured = false;
+    rows[0].regions[0].measures = {{"flip", 0.07}};
     Threshold threshold = limit_of(ThresholdKind::error, "two", 0.4);
     threshold.region = "silhouettes";
     EXPECT_NEAR(*verdict_of(threshold, rows).value.value, 0.5, 1e-12);
@@ -175,7 +195,11 @@ TEST(Verdicts, RegionsHaveTheirOwnError) {
     EXPECT_THAT(verdict_of(threshold, rows).message, HasSubstr("no pixels"));
     threshold.region = "rest";
     EXPECT_THAT(verdict_of(threshold, rows).message, HasSubstr("lost in the truth's noise"));
-    threshold.region = "silhouette";
+    threshold.region = "silhouettes", threshold.measure = "flip";
+    EXPECT_NEAR(*verdict_of(threshold, rows).value.value, 0.07, 1e-12);
+    threshold.measure = "ssim";
+    EXPECT_THAT(verdict_of(threshold, rows).message, HasSubstr("ssim over region 'silhouettes' does not exist"));
+    threshold.measure = "rmse", threshold.region = "silhouette";
     const Verdict misspelt = verdict_of(threshold, rows);
     EXPECT_EQ(misspelt.status, VerdictStatus::untold);
     EXPECT_THAT(misspelt.message, HasSubstr("did you mean 'silhouettes'?"));

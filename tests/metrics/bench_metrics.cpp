@@ -54,6 +54,20 @@ void run_hdr_flip(benchmark::State& state) {
     }
 }
 
+// What a row of results takes: every measure, with or without the intervals; FLIP apart.
+void run_all_measures(benchmark::State& state) {
+    ComparisonSettings settings;
+    settings.intervals = state.range(0) != 0;
+    for (auto _ : state) benchmark::DoNotOptimize(compare_planes(test_image(), reference_image(), settings).errors.mse);
+}
+
+BENCHMARK(run_all_measures)
+    ->Name("all but FLIP, 1920x1080x3")
+    ->ArgName("intervals")
+    ->Arg(0)
+    ->Arg(1)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
 BENCHMARK(run_ldr_flip)->Name("LDR-FLIP, 1920x1080x3")->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(run_hdr_flip)->Name("HDR-FLIP, 1920x1080x3")->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(run_ssim)->Name("ssim, 1920x1080x3")->Unit(benchmark::kMillisecond)->UseRealTime();

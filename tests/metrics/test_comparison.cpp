@@ -14,12 +14,80 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 TEST(Comparison, MeasuresHaveAFixedOrderAndNamesThatThresholdsCanRelyOn) {
+    std::vector<std::string> names = measure_names();
+    // Intervals stand right behind what they are of.
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        if (!has_interval(names[i])) continue;
+        EXPECT_EQ(names.at(i + 1), names[i] + "_lower");
+        EXPECT_EQ(names.at(i + 2), names[i] + "_upper");
+        names.erase(names.begin() + static_cast<std::ptrdiff_t>(i) + 1,
+                    names.begin() + static_cast<std::ptrdiff_t>(i) + 3);
+    }
     EXPECT_THAT(
-        measure_names(),
-        ElementsAre("mae", "mse", "rmse", "bias", "relative_mse_pbrt", "relative_mse_tev", "relative_mse_falcor",
-                    "psnr", "ssim", "ms_ssim", "flip", "flip_first_exposure", "flip_last_exposure", "median", "p95",
-                    "p99", "maximum", "data_range", "values", "left_out", "unbiased_mse", "unbiased_mse_lower",
-                    "unbiased_mse_upper", "unbiased_rmse", "reference_noise_mse", "noise_ratio", "trustworthy"));
+        names, ElementsAre("mae", "mse", "rmse", "bias", "relative_mse_pbrt", "relative_mse_tev", "relative_mse_falcor",
+                           "psnr", "ssim", "ms_ssim", "flip", "flip_first_exposure", "flip_last_exposure", "median",
+                           "p95", "p99", "maximum", "data_range", "values", "left_out", "unbiased_mse", "unbiased_rmse",
+                           "reference_noise_mse", "noise_ratio", "trustworthy"));
+}
+
+TEST(Comparison, TellsIntervalsOfAllThatSaysHowFarImagesAreApart) {
+    const Image reference = test::pattern(180, 200, false), other = test::pattern(180, 200, true);
+    Image test = reference;  // near enough that no scale of MS-SSIM has a negative mean
+    for (std::size_t i = 0; i < test.values().size(); ++i) test.values()[i] += 0.2f * other.values()[i];
+    ComparisonSettings settings;
+    settings.flip = FlipRange::displayed;
+    settings.referenced.bootstrap.resamples = 100;
+    Frame method(200, 180), truth(200, 180);
+    method.set("ao", test);
+    for (const char* plane : {"ao", "half_a.ao", "half_b.ao"}) truth.set(plane, reference);
+    const PlaneComparison comparison = compare_plane(method, truth, "ao", settings).front();
+    for (const std::string& name : measure_names()) {
+        if (!has_interval(name)) continue;
+        EXPECT_LE(comparison.measure(name + "_lower"), comparison.measure(name)) << name;
+        EXPECT_GE(comparison.measure(name + "_upper"), comparison.measure(name)) << name;
+        EXPECT_LT(comparison.measure(name + "_lower"), comparison.measure(name + "_upper")) << name;
+    }
+    settings.intervals = false;
+    const PlaneComparison without = compare_plane(method, truth, "ao", settings).front();
+    EXPECT_EQ(without.measure("mae"), comparison.measure("mae"));
+    EXPECT_EQ(without.measure("unbiased_mse"), comparison.measure("unbiased_mse"));
+    EXPECT_TRUE(std::isnan(without.measure("mae_lower")));
+}
+
+TEST(Comparison, OverRegionsIsThatOfTheMasksWithTheMapsOfTheWholeImage) {
+    const Image test = test::pattern(37, 53, true), reference = test::pattern(37, 53, false);
+    Frame method(53, 37), truth(53, 37);
+    method.set("ao", test), truth.set("ao", reference);
+    Region right{"border", Image(53, 37, 1), 0}, none{"rest", Image(53, 37, 1), 0};
+    for (int y = 0; y < 37; ++y) {
+        for (int x = 30; x < 53; ++x) right.mask.at(x, y) = 1.0f, ++right.pixels;
+    }
+    ComparisonSettings settings;
+    settings.flip = FlipRange::by_plane;
+    const auto comparisons = compare_plane(method, truth, "ao", settings, {right, none});
+    ASSERT_EQ(comparisons.size(), 2u) << "a region without pixels is left out";
+    const PlaneComparison& inside = comparisons[1];
+    EXPECT_EQ(inside.region, "border");
+    EXPECT_EQ(inside.pixels, right.pixels);
+    EXPECT_EQ(inside.measure("mae"), pixel_errors(test, reference, 1.0, &right.mask).mae);
+    EXPECT_EQ(inside.measure("p95"), pixel_errors(test, reference, 1.0, &right.mask).percentile_95);
+    EXPECT_EQ(inside.measure("ssim"), ssim(test, reference, 1.0, &right.mask).mean);
+    EXPECT_EQ(inside.measure("flip"), mean_flip(ldr_flip(test, reference), &right.mask));
+    EXPECT_LT(inside.measure("flip_lower"), inside.measure("flip"));
+    EXPECT_TRUE(std::isnan(inside.measure("ms_ssim")));
+    EXPECT_EQ(comparisons[0].measure("mae"), pixel_errors(test, reference, 1.0).mae);
+}
+
+TEST(Comparison, TakesExposuresAndPixelsPerDegreeThatAreStated) {
+    const Image test = test::pattern(37, 53, true), reference = test::pattern(37, 53, false);
+    ComparisonSettings settings;
+    settings.flip = FlipRange::radiance;
+    settings.pixels_per_degree = 30.0;
+    settings.exposures = ExposureRange{-2.0, 1.0, 3};
+    const PlaneComparison comparison = compare_planes(test, reference, settings, "total");
+    EXPECT_EQ(comparison.measure("flip"), mean_flip(hdr_flip(test, reference, {-2.0, 1.0, 3}, 30.0)));
+    EXPECT_EQ(comparison.measure("flip_first_exposure"), -2.0);
+    EXPECT_TRUE(compare_planes(test, Image(53, 37, 3), settings, "total").flip) << "a stated range shows black too";
 }
 
 TEST(Comparison, HoldsTheSameNumbersAsTheMeasuresThemselves) {

@@ -87,7 +87,7 @@ TEST(Ssim, MatchesScikitImage) {
 }
 
 TEST(Ssim, MapMatchesScikitImageAtTheBorders) {
-    const Image map = ssim_map(test::pattern(37, 53, true), test::pattern(37, 53, false), 1.0);
+    const Image map = SsimMap(test::pattern(37, 53, true), test::pattern(37, 53, false), 1.0).image();
     constexpr double float32 = 1e-7;  // the map is stored in single precision
     EXPECT_NEAR(map.at(0, 0), 1.0, float32);
     EXPECT_NEAR(map.at(20, 36), 0.40916366332904963, float32);
@@ -135,7 +135,7 @@ TEST(Ssim, AValueThatIsNotFiniteSpoilsItsWindowsOnlyAndIsCounted) {
         EXPECT_EQ(result.non_finite_windows, 121u);
         EXPECT_EQ(result.windows, 31u * 31u * 3u - 121u);
         EXPECT_TRUE(std::isfinite(result.mean));
-        EXPECT_TRUE(std::isnan(ssim_map(test, reference, 1.0).at(20, 20, 1)));
+        EXPECT_TRUE(std::isnan(SsimMap(test, reference, 1.0).image().at(20, 20, 1)));
     }
 }
 
@@ -208,6 +208,46 @@ TEST(MultiScaleSsim, AgreesWithItsFormula) {
     EXPECT_LT(expected, 0.99);  // the two differ
     EXPECT_NEAR(multi_scale_ssim(test, reference, 1.0), expected, order_of_summation);
     EXPECT_EQ(multi_scale_ssim(reference, reference, 1.0), 1.0);
+}
+
+// NumPy 1.24.2 and SciPy 1.10.1 (Debian 12), whose window is that of structural_similarity:
+//
+//   import numpy as np
+//   from scipy.ndimage import gaussian_filter
+//   y, x = np.mgrid[0:181, 0:187]
+//   f = np.float32
+//   r = f(((x // 16) * 29 + (y // 16) * 53) % 64) / f(64) * f(0.5) + f((x * 37 + y * 91 + x * y) % 256) / f(256) *
+//   f(0.5) v = r * f(0.75) + f((x * 5 + y * 3) % 32) / f(128) g = lambda a: gaussian_filter(a, 1.5, truncate=3.5,
+//   mode='reflect')[5:-5, 5:-5] def ssim(v, r, last):
+//       v, r = v.astype(float), r.astype(float)
+//       mv, mr = g(v), g(r)
+//       cs = (2 * (g(v * r) - mv * mr) + 0.03**2) / (g(v * v) - mv * mv + g(r * r) - mr * mr + 0.03**2)
+//       return ((2 * mv * mr + 0.01**2) / (mv**2 + mr**2 + 0.01**2) * cs if last else cs).mean()
+//   def half(a):
+//       a = a[:a.shape[0] // 2 * 2, :a.shape[1] // 2 * 2]
+//       return f(0.25) * (a[0::2, 0::2] + a[0::2, 1::2] + a[1::2, 0::2] + a[1::2, 1::2])
+//   result = 1.0
+//   for k, w in enumerate((0.0448, 0.2856, 0.3001, 0.2363, 0.1333)):
+//       result *= ssim(v, r, k == 4)**w
+//       v, r = half(v), half(r)
+TEST(MultiScaleSsim, MatchesNumPyAndSciPy) {
+    Image test(187, 181, 1), reference(187, 181, 1);
+    for (int y = 0; y < 181; ++y) {
+        for (int x = 0; x < 187; ++x) {
+            reference.at(x, y) = static_cast<float>(((x / 16) * 29 + (y / 16) * 53) % 64) / 64.0f * 0.5f +
+                                 static_cast<float>((x * 37 + y * 91 + x * y) % 256) / 256.0f * 0.5f;
+            test.at(x, y) = reference.at(x, y) * 0.75f + static_cast<float>((x * 5 + y * 3) % 32) / 128.0f;
+        }
+    }
+    EXPECT_NEAR(multi_scale_ssim(test, reference, 1.0), 0.9065057731775003, order_of_summation);
+}
+
+// At the coarsest scale one pixel is left of 16 x 16, at which contrast and structure have nothing to say of a
+// constant.
+TEST(MultiScaleSsim, OfTwoConstantsIsTheBrightnessTermOfTheCoarsestScaleAlone) {
+    const double brightness = 0.2501 / 0.3126;  // (2 * 0.5 * 0.25 + 1e-4) / (0.25 + 0.0625 + 1e-4)
+    EXPECT_NEAR(multi_scale_ssim(Image(176, 176, 1, 0.5f), Image(176, 176, 1, 0.25f), 1.0),
+                std::pow(brightness, 0.1333), order_of_summation);
 }
 
 TEST(MultiScaleSsim, ForgivesNoiseThatDistanceTakesAway) {
