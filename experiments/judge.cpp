@@ -101,8 +101,9 @@ std::string Judge::write_error_maps(const std::filesystem::path& folder, double 
         const Frame test = read(frame), reference = truth(frame);
         const std::string stem = files_[static_cast<std::size_t>(frame)].stem().string();
         for (const auto& [plane, of_plane] : scales) {
-            write_error_map(folder / fmt::format("{}.{}.error.png", stem, plane), test.plane(plane),
-                            reference.plane(plane), of_plane);
+            write_error_map(folder / fmt::format("{}.{}.error.png", stem, plane),
+                            *error_map(ErrorMapKind::difference, test.plane(plane), reference.plane(plane), plane),
+                            of_plane);
         }
     }
     return error_map_legend(scales);

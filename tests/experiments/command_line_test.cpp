@@ -120,6 +120,16 @@ TEST(CommandLine, CompareWritesJsonAndHeatMaps) {
     expect({"compare", bright, dark, "--json", "--heat-map", (folder.path / "maps").string()}, 0,
            HasSubstr("\"rmse\": 0.1"));
     EXPECT_TRUE(std::filesystem::exists(folder.path / "maps" / "total.error.png"));
+    expect({"compare", bright, dark, "--heat-map", (folder.path / "maps").string(), "--map", "flip", "--flip",
+            "displayed"},
+           0, HasSubstr("FLIP from 0 (black) to 1 (yellow)"));
+    expect({"compare", bright, dark, "--heat-map", (folder.path / "maps").string(), "--map", "ssim"}, 0,
+           HasSubstr("1 - SSIM from 0"));
+    expect({"compare", bright, dark, "--exposures", "-4to3"}, 2, HasSubstr("such as -4..3"));
+    expect({"compare", bright, dark, "--flip", "radiance", "--exposures", "-4..3", "--pixels-per-degree", "40"}, 0,
+           HasSubstr("flip_first_exposure"));
+    for (const char* file : {"total.flip.png", "total.ssim.png"})
+        EXPECT_TRUE(std::filesystem::exists(folder.path / "maps" / file)) << file;
 }
 
 TEST(CommandLine, ImagesOfDifferentSizesCannotBeCompared) {
