@@ -42,6 +42,12 @@ function short(value) {
   return value.toPrecision(3).replace(/e([+-])0*(\d)/, "e$1$2");
 }
 
+// A measure of a row by its name, with the ends of its interval.
+function measureOf(row, name) {
+  const of = (whole) => row.measures[data.measure_names.indexOf(whole)];
+  return { value: of(name), lower: of(`${name}_lower`), upper: of(`${name}_upper`) };
+}
+
 function interval(value, low, high) {
   return isNumber(low) && isNumber(high) ? `${short(value)} [${short(low)}, ${short(high)}]` : short(value);
 }

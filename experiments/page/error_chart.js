@@ -4,10 +4,7 @@
 
 // The errors that a chart can show: those that some row has.
 function errorsToChoose() {
-  const ofMeasure = (name) => {
-    const index = data.measure_names.indexOf(name);
-    return (row) => ({ value: row.measures[index] });
-  };
+  const ofMeasure = (name) => (row) => measureOf(row, name);
   const all = [
     ["RMSE", (row) => ({ value: row.rmse, lower: row.rmse_lower, upper: row.rmse_upper })],
     ["mean absolute error", ofMeasure("mae")], ["95th percentile", ofMeasure("p95")],

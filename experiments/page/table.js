@@ -51,11 +51,13 @@ function tableColumns() {
     ]);
   }
   const seen = new Set(["rmse", "mse", "psnr", "ssim", "data_range", "trustworthy"]);
-  const others =
-      data.measure_names.map((name, index) => ({ name, of: (row) => row.measures[index] })).filter(({ name,
-        of }) => !seen.has(name) && has(of));
-  if (others.length > 0)
-    groups.push(["all measures", others.map(({ name, of }) => number(name.replaceAll("_", " "), of, { error: true }))]);
+  const isEnd = (name) => name.endsWith("_lower") || name.endsWith("_upper");
+  const others = data.measure_names.filter(
+      (name) => !seen.has(name) && !isEnd(name) && has((row) => measureOf(row, name).value));
+  if (others.length > 0) {
+    groups.push(
+        ["all measures", others.map((name) => error(name.replaceAll("_", " "), (row) => measureOf(row, name)))]);
+  }
   groups.push([
     "noise and memory",
     [number("noise of truth", (row) => row.noise, { error: true }), number("G-buffer B/px", (row) => row.bytes || null)]
