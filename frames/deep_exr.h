@@ -4,8 +4,7 @@
 //
 //   Z                   the plane depth of the sample's layer: metres along the camera's -Z
 //   R, G, B             the first of the planes total, direct and albedo that every layer has: what compositing
-//   programs
-//                       show; left away where there is none
+//                       programs show; left away where there is none
 //   A                   1: surfaces are opaque. Merging two such files, or flattening one, shows what lies in front
 //   normal.X, ...       every plane that all layers have, named as channel_names.h says; in "direct.R" and so on also
 //                       the one that R, G and B repeat

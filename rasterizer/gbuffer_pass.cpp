@@ -1,11 +1,9 @@
 #include "rasterizer/gbuffer_pass.h"
 
-#include <array>
-#include <limits>
+#include <algorithm>
 
 #include <fmt/format.h>
 
-#include "rasterizer/gl_error.h"
 #include "rasterizer/one_pass_gbuffer.h"
 
 namespace plumb {

@@ -41,9 +41,6 @@ void GlObject::destroy() noexcept {
         case Kind::vertex_array:
             gl.DeleteVertexArrays(1, &id_);
             break;
-        case Kind::sampler:
-            gl.DeleteSamplers(1, &id_);
-            break;
         case Kind::query:
             gl.DeleteQueries(1, &id_);
             break;
@@ -253,13 +250,6 @@ GLuint create_vertex_array(GlContext& context) {
     return id;
 }
 
-GLuint create_sampler(GlContext& context) {
-    context.make_current();
-    GLuint id = 0;
-    context.gl.CreateSamplers(1, &id);
-    return id;
-}
-
 GLuint create_timer(GlContext& context) {
     context.make_current();
     GLuint id = 0;
@@ -273,16 +263,6 @@ GlVertexArray::GlVertexArray(GlContext& context)
     : GlObject(context, Kind::vertex_array, create_vertex_array(context), 0) {}
 
 void GlVertexArray::bind() const { context().gl.BindVertexArray(id()); }
-
-GlSampler::GlSampler(GlContext& context, GLint minify, GLint magnify, GLint wrap_u, GLint wrap_v)
-    : GlObject(context, Kind::sampler, create_sampler(context), 0) {
-    context.gl.SamplerParameteri(id(), GL_TEXTURE_MIN_FILTER, minify);
-    context.gl.SamplerParameteri(id(), GL_TEXTURE_MAG_FILTER, magnify);
-    context.gl.SamplerParameteri(id(), GL_TEXTURE_WRAP_S, wrap_u);
-    context.gl.SamplerParameteri(id(), GL_TEXTURE_WRAP_T, wrap_v);
-}
-
-void GlSampler::bind(GLuint unit) const { context().gl.BindSampler(unit, id()); }
 
 GlQuery::GlQuery(GlContext& context) : GlObject(context, Kind::query, create_timer(context), 0) {}
 

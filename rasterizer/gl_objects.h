@@ -19,7 +19,7 @@ public:
     std::size_t bytes() const { return bytes_; }
 
 protected:
-    enum class Kind { texture, framebuffer, buffer, vertex_array, sampler, query, program };
+    enum class Kind { texture, framebuffer, buffer, vertex_array, query, program };
 
     GlObject() = default;
     GlObject(GlContext& context, Kind kind, GLuint id, std::size_t bytes);
@@ -113,13 +113,6 @@ public:
     GlVertexArray() = default;
     explicit GlVertexArray(GlContext& context);
     void bind() const;
-};
-
-class GlSampler : public GlObject {
-public:
-    GlSampler() = default;
-    GlSampler(GlContext& context, GLint minify, GLint magnify, GLint wrap_u, GLint wrap_v);
-    void bind(GLuint unit) const;
 };
 
 // A timer query.

@@ -8,8 +8,7 @@
 //              frame ahead where camera and instances will be (FrameRequest::next), that is, shows frames one frame
 //              late. Exact: the layers are those of peeling, bit for bit.
 //   predict    the same third layer, drawn where camera and instances would be if they went on as they moved
-//   (moment.h).
-//              Exact for constant velocity; what accelerates is off by its acceleration over one frame.
+//              (moment.h). Exact for constant velocity; what accelerates is off by its acceleration over one frame.
 //   previous   layer 1 of the previous frame, at the same pixel. Guarantees nothing where anything moves.
 //   reproject  layer 1 of the previous frame, at the pixel where the fragment's point was then, against the depth that
 //              it had then: the separation is that of the previous frame, between points that were visible then. Wrong

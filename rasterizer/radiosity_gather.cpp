@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "rasterizer/bilateral_blur.h"
 #include "rasterizer/depth_mip_chain.h"
 #include "rasterizer/falloff.h"
 #include "rasterizer/gbuffer_planes.h"

@@ -31,12 +31,12 @@
 // thesis offsets its spiral by half a turn's share instead of a hash, and spins it by random numbers.
 #pragma once
 
-#include "rasterizer/bilateral_blur.h"
 #include "rasterizer/fullscreen.h"
 #include "rasterizer/pass.h"
 #include "rasterizer/sample_spiral.h"
 
 namespace plumb {
+#include "rasterizer/inner_area.h"
 
 // Writes one layer of the plane that gathered_plane() names.
 class RadiosityGatherPass final : public Pass {

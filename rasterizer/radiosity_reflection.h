@@ -14,8 +14,8 @@
 // then that of the other lit layers (gbuffer.radiance_format).
 #pragma once
 
-#include "rasterizer/bilateral_blur.h"
 #include "rasterizer/fullscreen.h"
+#include "rasterizer/inner_area.h"
 #include "rasterizer/pass.h"
 
 namespace plumb {

@@ -14,8 +14,8 @@
 #pragma once
 
 #include "rasterizer/ambient_light.h"
-#include "rasterizer/bilateral_blur.h"
 #include "rasterizer/fullscreen.h"
+#include "rasterizer/inner_area.h"
 #include "rasterizer/pass.h"
 
 namespace plumb {

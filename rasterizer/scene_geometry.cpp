@@ -172,7 +172,6 @@ void SceneGeometry::upload_meshes() {
         draw.material = mesh.material;
         draw.variant = static_cast<int>(known - variants_.begin());
         draw.mirrored = glm::determinant(glm::mat3(instance.world_from_object)) < 0.0f;
-        draw.emissive = material.is_emissive();
         draw.index_count = range.index_count;
         draw.first_index = range.first_index;
         draw.first_vertex = range.first_vertex;

@@ -40,7 +40,6 @@ struct SceneDraw {
     int material = 0;
     int variant = 0;        // index into SceneGeometry::variants()
     bool mirrored = false;  // its transform turns counter-clockwise triangles clockwise
-    bool emissive = false;
     GLsizei index_count = 0;
     std::size_t first_index = 0;
     GLint first_vertex = 0;

@@ -29,8 +29,8 @@
 
 #include <string>
 
-#include "rasterizer/bilateral_blur.h"
 #include "rasterizer/fullscreen.h"
+#include "rasterizer/inner_area.h"
 #include "rasterizer/reprojection.h"
 
 namespace plumb {
