@@ -18,6 +18,7 @@
 #include "experiments/view_options.h"
 #include "frames/exr.h"
 #include "rasterizer/gl_error.h"
+#include "rasterizer/pass_timer.h"
 #include "rasterizer/pipeline.h"
 #include "scenes/effects.h"
 
@@ -69,7 +70,7 @@ void print_timing(const Timing& timing, const GlInfo& info) {
     table.add_row({"all", fmt::format("{:.3f}", timing.median)});
     fmt::print("{}median of {} frames, quartiles {:.3f} and {:.3f} ms; {}; timed by {}\n", table.print(),
                timing.repetitions, timing.lower_quartile, timing.upper_quartile, info.renderer,
-               info.software ? "the steady clock after glFinish (software)" : "GPU timer queries");
+               timer_description(info.software));
 }
 
 // The frame at --time after those before it, so that what the method keeps from frame to frame has come about.

@@ -14,6 +14,7 @@
 #include "experiments/run_json.h"
 #include "frames/image_error.h"
 #include "metrics/comparison.h"
+#include "rasterizer/pass_timer.h"
 
 namespace plumb {
 namespace {
@@ -268,8 +269,8 @@ Json notes_json(const RunResults& results) {
         "arrives from within the radius that the methods gather from, what they tried.");
     notes.push_back(fmt::format(
         "A time is that of all passes that the plane needs, and of no others: {} warm-up, then the median of "
-        "{} frames, methods taking turns{}.",
-        experiment.timing.warm_up, experiment.timing.repetitions,
+        "{} frames, methods taking turns; each pass is timed by {}{}.",
+        experiment.timing.warm_up, experiment.timing.repetitions, timer_description(results.gl_software),
         results.gl_software ? "; OpenGL ran on the CPU here, so compare ratios, not milliseconds" : ""));
     notes.push_back(
         "Ratios in words are geometric means over views, their intervals Student's over the views' logarithms.");

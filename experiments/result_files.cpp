@@ -14,6 +14,7 @@
 #include "metrics/comparison.h"
 #include "metrics/gbuffer_fidelity.h"
 #include "metrics/regions.h"
+#include "rasterizer/pass_timer.h"
 
 namespace plumb {
 namespace {
@@ -222,7 +223,8 @@ std::string print_json(const RunResults& results) {
                   {"vendor", results.gl_vendor},
                   {"renderer", results.gl_renderer},
                   {"version", results.gl_version},
-                  {"software", results.gl_software}};
+                  {"software", results.gl_software},
+                  {"timer", timer_description(results.gl_software)}};
     json["experiment"] = experiment_json(results.experiment);
     json["experiment_text"] = results.experiment_text;
     json["scene_hashes"] = results.scene_hashes;

@@ -2,6 +2,10 @@
 
 namespace plumb {
 
+std::string_view timer_description(bool software) {
+    return software ? "glFinish and the steady clock" : "GPU timer queries";
+}
+
 PassTimer::PassTimer(GlContext& context, std::size_t passes) : context_(context), clocked_(passes) {
     if (context.info().software) return;
     for (std::size_t pass = 0; pass < passes; ++pass) queries_.emplace_back(context);
@@ -30,10 +34,6 @@ std::vector<double> PassTimer::milliseconds() const {
     std::vector<double> result;
     for (const GlQuery& query : queries_) result.push_back(query.milliseconds());
     return result;
-}
-
-std::string_view PassTimer::description() const {
-    return context_.info().software ? "glFinish and steady clock" : "GPU timer queries";
 }
 
 }  // namespace plumb

@@ -10,6 +10,9 @@
 
 namespace plumb {
 
+// What times the passes, for reports: "GPU timer queries" or "glFinish and the steady clock".
+std::string_view timer_description(bool software);
+
 class PassTimer {
 public:
     PassTimer(GlContext& context, std::size_t passes);
@@ -17,7 +20,6 @@ public:
     void end(std::size_t pass);
     // Of the last frame; waits for the GPU.
     std::vector<double> milliseconds() const;
-    std::string_view description() const;
 
 private:
     GlContext& context_;

@@ -162,8 +162,6 @@ std::size_t Pipeline::gbuffer_bytes_per_pixel() const {
     return bytes;
 }
 
-std::string_view Pipeline::timer_description() const { return implementation_->timer.description(); }
-
 RasterResult Pipeline::render(const FrameRequest& request) {
     Implementation& self = *implementation_;
     self.run(request);

@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <memory>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "frames/frame.h"
@@ -61,8 +60,6 @@ public:
     // Bytes of the G-buffer's textures per pixel, over all layers: planes, lit radiance, the hardware's depth and what
     // is kept for the next frame, as far as the wanted planes need them.
     std::size_t gbuffer_bytes_per_pixel() const;
-    // How the passes are timed: "GPU timer queries" or "glFinish and steady clock".
-    std::string_view timer_description() const;
 
 private:
     struct Implementation;
