@@ -3,8 +3,6 @@
 #include <array>
 #include <span>
 
-#include <fmt/format.h>
-
 #include "rasterizer/environment_light.h"
 #include "rasterizer/gbuffer_planes.h"
 #include "rasterizer/light_volume_pass.h"
@@ -13,20 +11,9 @@
 namespace plumb {
 namespace {
 
-// Texture units of direct_light.frag.
+// Texture units of direct_light.frag besides those of LightBuffers.
 struct DirectLightUnits {
-    enum : GLuint {
-        depth,
-        normal,
-        albedo,
-        points,
-        maps,
-        emitters,
-        ambient,
-        paraboloids,
-        local_irradiance,
-        environment
-    };
+    enum : GLuint { depth, normal, albedo, ambient = 6, local_irradiance = 8, environment };
 };
 
 bool uses_ambient_visibility(const Scene& scene, const Method& method) {
@@ -42,15 +29,9 @@ bool uses_irradiance_cube(const Scene& scene, const Method& method) {
 DirectLightPass::DirectLightPass(const PassResources& resources, int layer)
     : context_(resources.context),
       layer_(layer),
-      lights_(resources.scene, resources.method.direct),
-      dark_(lights_.empty() && resources.scene.environment.is_black()),
+      lights_(resources, LightKinds::all),
+      dark_(lights_.lights().empty() && resources.scene.environment.is_black()),
       draw_(context_, resources.programs, "direct_light.frag", defines(resources)),
-      points_(GlBuffer::from(context_, lights_.points)),
-      spots_(GlBuffer::from(context_, lights_.spots)),
-      directionals_(GlBuffer::from(context_, lights_.directionals)),
-      emitters_(GlBuffer::from(context_, lights_.emitters)),
-      pieces_(GlBuffer::from(context_, lights_.pieces)),
-      emitter_cubes_(GlBuffer::from(context_, lights_.emitter_cube_records)),
       depth_(resources.planes.get("depth")),
       normal_(resources.planes.get("normal")),
       albedo_(resources.planes.get(diffuse_albedo_plane(resources.scene, resources.method))) {
@@ -60,10 +41,6 @@ DirectLightPass::DirectLightPass(const PassResources& resources, int layer)
         planes.create("direct", texture_format(resources.method.gbuffer.radiance_format),
                       resources.layers_of("direct"));
     target_ = GlFramebuffer(context_, std::array{GlAttachment{&planes.get("direct"), layer}}, {}, "direct");
-    shadow_points_ = planes.find("shadow.points");
-    shadow_paraboloids_ = planes.find("shadow.paraboloids");
-    shadow_maps_ = planes.find("shadow.maps");
-    shadow_emitters_ = planes.find("shadow.emitters");
     if (uses_ambient_visibility(resources.scene, resources.method)) ambient_visibility_ = &planes.get("ao");
     if (uses_light_volumes(resources.scene, resources.method)) {
         local_irradiance_ = &planes.get("local_irradiance");
@@ -76,19 +53,10 @@ DirectLightPass::DirectLightPass(const PassResources& resources, int layer)
 }
 
 ShaderDefines DirectLightPass::defines(const PassResources& resources) const {
-    ShaderDefines result;
-    const auto add_count = [&](const char* name, std::size_t count) {
-        if (count > 0) result.emplace_back(name, fmt::format("{}", count));
-    };
-    if (uses_light_volumes(resources.scene, resources.method)) {
-        result.emplace_back("LOCAL_IRRADIANCE", "1");
-    } else {
-        add_count("POINT_LIGHTS", lights_.points.size());
-        add_count("SPOT_LIGHTS", lights_.spots.size());
-    }
-    add_count("DIRECTIONAL_LIGHTS", lights_.directionals.size());
-    add_count("EMITTERS", lights_.emitters.size());
-    for (auto& define : shadow_defines(lights_, resources.method.direct.shadow)) result.push_back(std::move(define));
+    const bool by_volumes = uses_light_volumes(resources.scene, resources.method);
+    ShaderDefines result = light_count_defines(lights_.lights(), !by_volumes);
+    if (by_volumes) result.emplace_back("LOCAL_IRRADIANCE", "1");
+    for (auto& define : lights_.shadow_defines()) result.push_back(std::move(define));
     const Environment& environment = resources.scene.environment;
     if (!environment.is_black()) result.emplace_back("ENVIRONMENT", environment.texture == no_texture ? "1" : "9");
     if (uses_irradiance_cube(resources.scene, resources.method)) result.emplace_back("ENVIRONMENT_CUBE", "1");
@@ -103,26 +71,20 @@ void DirectLightPass::set_environment(const PassResources& resources) const {
     draw_.program().set("environment_irradiance", std::span(coefficients).first(used));
 }
 
-void DirectLightPass::execute(const PassFrame&) {
+void DirectLightPass::execute(const PassFrame& frame) {
     depth_.bind(DirectLightUnits::depth);
     normal_.bind(DirectLightUnits::normal);
     albedo_.bind(DirectLightUnits::albedo);
-    if (shadow_points_) shadow_points_->bind(DirectLightUnits::points);
-    if (shadow_paraboloids_) shadow_paraboloids_->bind(DirectLightUnits::paraboloids);
-    if (shadow_maps_) shadow_maps_->bind(DirectLightUnits::maps);
-    if (shadow_emitters_) shadow_emitters_->bind(DirectLightUnits::emitters);
     if (local_irradiance_) local_irradiance_->bind(DirectLightUnits::local_irradiance);
     if (environment_irradiance_) environment_irradiance_->bind(DirectLightUnits::environment);
     if (ambient_visibility_) ambient_visibility_->bind(DirectLightUnits::ambient);
-    const std::array<const GlBuffer*, 6> buffers{&points_,   &spots_,  &directionals_,
-                                                 &emitters_, &pieces_, &emitter_cubes_};
-    for (std::size_t i = 0; i < buffers.size(); ++i) buffers[i]->bind(GL_SHADER_STORAGE_BUFFER, static_cast<GLuint>(i));
+    lights_.bind(frame.time);
     if (!dark_) draw_.program().set("layer", layer_);
     draw_.draw(target_);
 }
 
 PassDeclaration declare_direct_light(const Scene& scene, const LightSet& lights, const Method& method, int layer) {
-    const std::string prefix(layer == 0 ? "" : second_layer_prefix);
+    const std::string prefix = layer_prefix(layer);
     PassDeclaration pass;
     pass.name = layer == 0 ? "direct" : "direct.layer2";
     pass.inputs = {prefix + "depth", prefix + "normal", prefix + diffuse_albedo_plane(scene, method)};

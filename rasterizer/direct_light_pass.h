@@ -15,7 +15,7 @@
 #pragma once
 
 #include "rasterizer/fullscreen.h"
-#include "rasterizer/light_set.h"
+#include "rasterizer/light_buffers.h"
 #include "rasterizer/pass.h"
 
 namespace plumb {
@@ -31,15 +31,10 @@ private:
 
     GlContext& context_;
     int layer_;
-    LightSet lights_;
+    LightBuffers lights_;
     bool dark_;  // nothing shines: the shader reads nothing
     FullscreenDraw draw_;
-    GlBuffer points_, spots_, directionals_, emitters_, pieces_, emitter_cubes_;
     const GlTexture &depth_, &normal_, &albedo_;
-    const GlTexture* shadow_points_ = nullptr;
-    const GlTexture* shadow_paraboloids_ = nullptr;
-    const GlTexture* shadow_maps_ = nullptr;
-    const GlTexture* shadow_emitters_ = nullptr;
     const GlTexture* local_irradiance_ = nullptr;
     const GlTexture* environment_irradiance_ = nullptr;
     const GlTexture* ambient_visibility_ = nullptr;

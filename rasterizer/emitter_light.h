@@ -6,7 +6,7 @@
 // from farther away than a cluster is wide, too smooth close by.
 // The mean of an emission texture over a triangle stands for its texels.
 //
-// Emitters stand where the scene has them when the passes are made: a moving one shines from there on.
+// Emitters stand where the scene has them; moving_emitters.h takes those along that move.
 //
 // Visibility is that of a few points of the emitter, whose mean over cube shadow maps multiplies all pieces.
 #pragma once

@@ -101,8 +101,8 @@ public:
     // 16 bytes are allocated.
     GlBuffer(GlContext& context, std::size_t size, const void* data, GLbitfield flags = 0);
     template <typename Value>
-    static GlBuffer from(GlContext& context, const std::vector<Value>& values) {
-        return GlBuffer(context, values.size() * sizeof(Value), values.data());
+    static GlBuffer from(GlContext& context, const std::vector<Value>& values, GLbitfield flags = 0) {
+        return GlBuffer(context, values.size() * sizeof(Value), values.data(), flags);
     }
     void write(std::size_t offset, std::size_t size, const void* data) const;
     void bind(GLenum indexed_target, GLuint index) const;

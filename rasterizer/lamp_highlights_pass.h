@@ -10,9 +10,9 @@
 //   brighter than those of a disc. RGBA32F, as the highlight of a nearly smooth surface exceeds half floats.
 #pragma once
 
-#include "rasterizer/bilateral_blur.h"
 #include "rasterizer/fullscreen.h"
-#include "rasterizer/light_set.h"
+#include "rasterizer/inner_area.h"
+#include "rasterizer/light_buffers.h"
 #include "rasterizer/pass.h"
 
 namespace plumb {
@@ -25,16 +25,12 @@ public:
     void execute(const PassFrame& frame) override;
 
 private:
-    ShaderDefines defines(const PassResources& resources) const;
+    ShaderDefines defines() const;
 
     GlContext& context_;
-    LightSet lights_;
+    LightBuffers lights_;
     FullscreenDraw draw_;
-    GlBuffer points_, spots_, directionals_;
     const GlTexture &depth_, &normal_, &specular_, &roughness_;
-    const GlTexture* shadow_points_ = nullptr;
-    const GlTexture* shadow_paraboloids_ = nullptr;
-    const GlTexture* shadow_maps_ = nullptr;
     GlFramebuffer target_;
     InnerArea area_;
 };

@@ -69,6 +69,9 @@ struct EmitterCubeRecord {
     float depth_scale;
 };
 
+// Of what a pass computes the light.
+enum class LightKinds { all, lamps };  // lamps: all but emissive surfaces
+
 struct LightSet {
     // Emissive surfaces are left out where `direct` does not want them.
     LightSet(const Scene& scene, const DirectSettings& direct);

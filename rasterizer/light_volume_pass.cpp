@@ -1,6 +1,7 @@
 #include "rasterizer/light_volume_pass.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 
 #include <fmt/format.h>
@@ -11,19 +12,15 @@
 namespace plumb {
 namespace {
 
-// Texture units of lit_surface.glsl and shadow_lookup.glsl.
+// Texture units of lit_surface.glsl.
 constexpr GLuint volume_depth_unit = 0, volume_normal_unit = 1;
-constexpr std::array<std::pair<const char*, GLuint>, 3> shadow_units{
-    {{"shadow.points", 3}, {"shadow.maps", 4}, {"shadow.paraboloids", 7}}};
 // A hardware depth buffer; not a plane that a pass could read. Both layers use it in turn.
 constexpr const char* depth_stencil_name = "light_volumes.depth_stencil";
 
 constexpr int sphere_subdivisions = 1;  // 80 triangles, 6 % more pixels than the sphere itself
 constexpr int cone_sides = 16;
 
-std::string plane_name(int layer) {
-    return (layer == 0 ? std::string() : std::string(second_layer_prefix)) + "local_irradiance";
-}
+std::string plane_name(int layer) { return layer_prefix(layer) + "local_irradiance"; }
 
 float extent_of(const VolumeMesh& mesh) {
     float extent = 0.0f;
@@ -38,24 +35,17 @@ LightVolumePass::LightVolumePass(const PassResources& resources, int layer, bool
       layer_(layer),
       uses_stencil_(resources.method.direct.local_lights == LocalLights::volume_stencil),
       culled_face_(!uses_stencil_ && resources.method.direct.volume_faces == VolumeFaces::front ? GL_BACK : GL_FRONT),
-      lights_(resources.scene, resources.method.direct),
-      points_(GlBuffer::from(context_, lights_.points)),
-      spots_(GlBuffer::from(context_, lights_.spots)),
+      lights_(resources, LightKinds::lamps),
       vertex_array_(context_),
       depth_(resources.planes.get("depth")),
       normal_(resources.planes.get("normal")) {
-    const ShadowSettings& settings = resources.method.direct.shadow;
     upload(LightVolumes(resources.scene, resources.method.direct.volume_threshold), resources.programs,
-           shadow_defines(lights_, settings), counts_fragments);
+           lights_.shadow_defines(), counts_fragments);
     if (uses_stencil_) {
         stencil_program_ = &resources.programs.get({"light_volume.vert", "light_volume_stencil.frag"});
         depth_draw_.emplace(context_, resources.programs, "light_volume_depth.frag");
     }
     create_targets(resources.planes, resources.layers_of("local_irradiance"));
-    for (std::size_t i = 0; i < shadow_units.size(); ++i) {
-        const char* name = shadow_units[i].first;
-        if (resources.planes.has(name)) shadows_[i] = &resources.planes.get(name);
-    }
     if (counts_fragments) {
         fragment_counter_ = GlBuffer(context_, sizeof(GLuint), nullptr, GL_DYNAMIC_STORAGE_BIT);
     }
@@ -87,9 +77,9 @@ void LightVolumePass::upload(const LightVolumes& volumes, ProgramCache& programs
         }
         instances.insert(instances.end(), group_volumes.begin(), group_volumes.end());
     };
-    add_group("POINT_LIGHTS", lights_.points.size(), sphere, volumes.point_spheres);
-    add_group("SPOT_LIGHTS", lights_.spots.size(), sphere, volumes.spot_spheres);
-    add_group("SPOT_LIGHTS", lights_.spots.size(), cone, volumes.spot_cones);
+    add_group("POINT_LIGHTS", lights_.lights().points.size(), sphere, volumes.point_spheres);
+    add_group("SPOT_LIGHTS", lights_.lights().spots.size(), sphere, volumes.spot_spheres);
+    add_group("SPOT_LIGHTS", lights_.lights().spots.size(), cone, volumes.spot_cones);
     mesh_vertices_ = GlBuffer::from(context_, positions);
     mesh_indices_ = GlBuffer::from(context_, indices);
     instances_ = GlBuffer::from(context_, instances);
@@ -136,11 +126,7 @@ void LightVolumePass::execute(const PassFrame& frame) {
     }
     depth_.bind(volume_depth_unit);
     normal_.bind(volume_normal_unit);
-    for (std::size_t i = 0; i < shadows_.size(); ++i) {
-        if (shadows_[i] != nullptr) shadows_[i]->bind(shadow_units[i].second);
-    }
-    points_.bind(GL_SHADER_STORAGE_BUFFER, 0);
-    spots_.bind(GL_SHADER_STORAGE_BUFFER, 1);
+    lights_.bind();
     for (const Group& group : groups_) group.program->set("layer", layer_);
     if (uses_stencil_) draw_depth();
 
@@ -233,11 +219,11 @@ bool uses_light_volumes(const Scene& scene, const Method& method) {
 }
 
 PassDeclaration declare_light_volumes(const Scene& scene, const LightSet& lights, const Method& method, int layer) {
-    const std::string prefix(layer == 0 ? "" : second_layer_prefix);
+    const std::string prefix = layer_prefix(layer);
     PassDeclaration pass;
     pass.name = layer == 0 ? "light volumes" : "light volumes.layer2";
     pass.inputs = {prefix + "depth", prefix + "normal"};
-    for (std::string& texture : shadow_textures(lights)) pass.inputs.push_back(std::move(texture));
+    for (std::string& texture : shadow_textures(lights, LightKinds::lamps)) pass.inputs.push_back(std::move(texture));
     pass.outputs = {plane_name(layer)};
     pass.create = [layer](const PassResources& resources) {
         return std::make_unique<LightVolumePass>(resources, layer);

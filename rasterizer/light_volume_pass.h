@@ -19,12 +19,11 @@
 //   same work without the blending.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 
 #include "rasterizer/fullscreen.h"
-#include "rasterizer/light_set.h"
+#include "rasterizer/light_buffers.h"
 #include "rasterizer/light_volumes.h"
 #include "rasterizer/pass.h"
 
@@ -63,14 +62,13 @@ private:
     int layer_;
     bool uses_stencil_;
     GLenum culled_face_;
-    LightSet lights_;
-    GlBuffer points_, spots_, mesh_vertices_, mesh_indices_, instances_, fragment_counter_;
+    LightBuffers lights_;
+    GlBuffer mesh_vertices_, mesh_indices_, instances_, fragment_counter_;
     GlVertexArray vertex_array_;
     std::vector<Group> groups_;
     const Program* stencil_program_ = nullptr;
     std::optional<FullscreenDraw> depth_draw_;
     const GlTexture &depth_, &normal_;
-    std::array<const GlTexture*, 3> shadows_{};
     GlFramebuffer target_;
 };
 

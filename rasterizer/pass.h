@@ -9,6 +9,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -61,6 +62,7 @@ struct PassFrame {
     // The frame before was told of this very one as its next.
     bool foretold = false;
     int number = 0;  // frames since the last cut: 0 unless `continues`
+    std::optional<double> time = {};  // of the instances that move (Moment::time)
 };
 
 class Pass {

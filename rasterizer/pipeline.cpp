@@ -85,7 +85,8 @@ struct Pipeline::Implementation {
         if (geometry) geometry->move_to(request.now, previous, next);
         // What was foretold was drawn with the offset of the frame that would follow.
         const bool foretold = foretold_ == request.now && (continues || offsets.size() == 1);
-        const PassFrame frame{wide, wide_previous, request.truth, &wide_next, continues, foretold, frame_number_};
+        const PassFrame frame{wide,      wide_previous, request.truth, &wide_next,
+                              continues, foretold,      frame_number_, request.now.time};
         // Whatever throws below leaves no history.
         forget();
         for (std::size_t i = 0; i < passes.size(); ++i) {

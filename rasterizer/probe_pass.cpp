@@ -6,6 +6,8 @@
 #include <glm/gtc/constants.hpp>
 
 #include "rasterizer/cube_faces.h"
+#include "rasterizer/gbuffer_planes.h"
+#include "rasterizer/normal_encoding.h"
 #include "rasterizer/pass_plan.h"
 #include "rasterizer/passes.h"
 #include "rasterizer/scene_reach.h"
@@ -20,6 +22,8 @@ constexpr float near_plane = 0.01f;
 Method method_of_faces(const Method& method) {
     Method faces = method;
     // Encodings stay: the programs that the passes share are made for them.
+    faces.gbuffer.normal_format = normal_format_of(method);
+    if (!stores_positions(method)) faces.gbuffer.position = PositionSource::from_depth;
     faces.gbuffer.source = SourceOfStage::method;
     faces.gbuffer.generation = LayerGeneration::peel;
     faces.gbuffer.layer_selection = LayerSelection::geometry_shader;
@@ -69,13 +73,13 @@ public:
         source_ = GlFramebuffer(context_, std::array{GlAttachment{&planes_.get("total")}}, {}, "probe");
     }
 
-    void draw_face(int face, const GlFramebuffer& target) const {
+    void draw_face(int face, const GlFramebuffer& target, const std::optional<double>& time) const {
         const View& view = views_[static_cast<std::size_t>(face)];
         view_uniforms_.update(view, view, 0);
         for (std::size_t i = 0; i < passes_.size(); ++i) {
             if (face > 0 && i == shadows_) continue;  // they do not depend on the view
             view_uniforms_.bind();
-            passes_[i]->execute({view, view});
+            passes_[i]->execute({.view = view, .previous = view, .time = time});
         }
         // Both have their lower row first.
         const int size = planes_.width();
@@ -102,9 +106,9 @@ ProbePass::ProbePass(const PassResources& resources)
 
 ProbePass::~ProbePass() = default;
 
-void ProbePass::execute(const PassFrame&) {
+void ProbePass::execute(const PassFrame& frame) {
     if (!capture_) return;
-    for (int face = 0; face < 6; ++face) capture_->draw_face(face, maps_.face(face));
+    for (int face = 0; face < 6; ++face) capture_->draw_face(face, maps_.face(face), frame.time);
     maps_.filter();
     if (!every_frame_) capture_.reset();
 }

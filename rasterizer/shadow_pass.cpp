@@ -56,12 +56,13 @@ ShadowPass::ShadowPass(const PassResources& resources)
     : context_(resources.context),
       scene_(resources.scene),
       settings_(resources.method.direct.shadow),
-      geometry_(resources.geometry()) {
-    const LightSet lights(scene_, resources.method.direct);
-    add_cubes(resources.planes, point_texture, lights.point_cubes, settings_.cube_size);
-    add_cubes(resources.planes, emitter_texture, lights.emitter_cubes, settings_.emitter_size);
-    add_paraboloids(resources.planes, lights.point_paraboloids, settings_.paraboloid_size);
-    add_maps(resources.planes, lights.maps, settings_.map_size);
+      geometry_(resources.geometry()),
+      lights_(scene_, resources.method.direct),
+      moving_(scene_, resources.method.direct) {
+    add_cubes(resources, point_texture, lights_.point_cubes, settings_.cube_size);
+    add_cubes(resources, emitter_texture, lights_.emitter_cubes, settings_.emitter_size);
+    add_paraboloids(resources, lights_.point_paraboloids, settings_.paraboloid_size);
+    add_maps(resources, lights_.maps, settings_.map_size);
     for (const MaterialVariant& variant : geometry_.variants()) coverage_.push_back(variant.coverage());
     find_programs(resources.programs);
 }
@@ -91,11 +92,11 @@ void ShadowPass::find_programs(ProgramCache& programs) {
     }
 }
 
-void ShadowPass::add_cubes(PlaneTextures& planes, const std::string& name, const std::vector<ShadowCube>& cubes,
-                           int size) {
-    if (cubes.empty()) return;
+void ShadowPass::add_cubes(const PassResources& resources, const std::string& name,
+                           const std::vector<ShadowCube>& cubes, int size) {
+    if (!resources.is_read(name)) return;
     require_layers(context_, name.c_str(), 6 * cubes.size());
-    const GlTexture& texture = planes.adopt(
+    const GlTexture& texture = resources.planes.adopt(
         name, GlTexture::cube_array(context_, GL_DEPTH_COMPONENT32F, size, static_cast<int>(cubes.size())));
     make_comparing(texture);
     const bool one_pass = settings_.cube_generation == CubeGeneration::one_pass;
@@ -103,11 +104,13 @@ void ShadowPass::add_cubes(PlaneTextures& planes, const std::string& name, const
         framebuffers_.emplace_back(context_, std::span<const GlAttachment>(), GlAttachment{&texture, -1}, name.c_str());
     for (std::size_t i = 0; i < cubes.size(); ++i) {
         const int first_layer = static_cast<int>(6 * i);
+        const int emitter_cube = name == emitter_texture ? static_cast<int>(i) : -1;
         if (one_pass) {
             targets_.push_back({.framebuffer = framebuffers_.size() - 1,
                                 .projection = Projection::whole_cube,
                                 .cube = cubes[i],
-                                .first_layer = first_layer});
+                                .first_layer = first_layer,
+                                .emitter_cube = emitter_cube});
             continue;
         }
         for (int face = 0; face < 6; ++face) {
@@ -117,17 +120,19 @@ void ShadowPass::add_cubes(PlaneTextures& planes, const std::string& name, const
                 {.framebuffer = framebuffers_.size() - 1,
                  .projection = Projection::cube_face,
                  .clip_from_world = clip_from_world(cubes[i], cube_faces[static_cast<std::size_t>(face)]),
-                 .cube = cubes[i]});
+                 .cube = cubes[i],
+                 .face = face,
+                 .emitter_cube = emitter_cube});
         }
     }
 }
 
-void ShadowPass::add_paraboloids(PlaneTextures& planes, const std::vector<ShadowCube>& cubes, int size) {
-    if (cubes.empty()) return;
+void ShadowPass::add_paraboloids(const PassResources& resources, const std::vector<ShadowCube>& cubes, int size) {
+    if (!resources.is_read(paraboloid_texture)) return;
     require_layers(context_, paraboloid_texture, 2 * cubes.size());
-    const GlTexture& texture =
-        planes.adopt(paraboloid_texture,
-                     GlTexture::array(context_, GL_DEPTH_COMPONENT32F, size, size, static_cast<int>(2 * cubes.size())));
+    const GlTexture& texture = resources.planes.adopt(
+        paraboloid_texture,
+        GlTexture::array(context_, GL_DEPTH_COMPONENT32F, size, size, static_cast<int>(2 * cubes.size())));
     make_comparing(texture);
     for (std::size_t i = 0; i < cubes.size(); ++i) {
         for (int half = 0; half < 2; ++half) {
@@ -141,10 +146,10 @@ void ShadowPass::add_paraboloids(PlaneTextures& planes, const std::vector<Shadow
     }
 }
 
-void ShadowPass::add_maps(PlaneTextures& planes, const std::vector<ShadowMap>& maps, int size) {
-    if (maps.empty()) return;
+void ShadowPass::add_maps(const PassResources& resources, const std::vector<ShadowMap>& maps, int size) {
+    if (!resources.is_read(map_texture)) return;
     require_layers(context_, map_texture, maps.size());
-    const GlTexture& texture = planes.adopt(
+    const GlTexture& texture = resources.planes.adopt(
         map_texture, GlTexture::array(context_, GL_DEPTH_COMPONENT32F, size, size, static_cast<int>(maps.size())));
     make_comparing(texture);
     for (std::size_t i = 0; i < maps.size(); ++i) {
@@ -154,7 +159,18 @@ void ShadowPass::add_maps(PlaneTextures& planes, const std::vector<ShadowMap>& m
     }
 }
 
-void ShadowPass::execute(const PassFrame&) {
+void ShadowPass::follow_emitters(const PassFrame& frame) {
+    if (!moving_.move_to(frame.time, lights_)) return;
+    for (Target& target : targets_) {
+        if (target.emitter_cube < 0) continue;
+        target.cube = lights_.emitter_cubes[static_cast<std::size_t>(target.emitter_cube)];
+        if (target.projection == Projection::cube_face)
+            target.clip_from_world = clip_from_world(target.cube, cube_faces[static_cast<std::size_t>(target.face)]);
+    }
+}
+
+void ShadowPass::execute(const PassFrame& frame) {
+    follow_emitters(frame);
     const GladGLContext& gl = context_.gl;
     constexpr float infinitely_far = 0.0f;
     for (const GlFramebuffer& framebuffer : framebuffers_) {
@@ -233,11 +249,11 @@ void ShadowPass::draw(const Target& target) const {
     if (clips) gl.Disable(GL_CLIP_DISTANCE0);
 }
 
-std::vector<std::string> shadow_textures(const LightSet& lights) {
+std::vector<std::string> shadow_textures(const LightSet& lights, LightKinds kinds) {
     std::vector<std::string> names;
     if (!lights.point_cubes.empty()) names.emplace_back(point_texture);
     if (!lights.point_paraboloids.empty()) names.emplace_back(paraboloid_texture);
-    if (!lights.emitter_cubes.empty()) names.emplace_back(emitter_texture);
+    if (kinds == LightKinds::all && !lights.emitter_cubes.empty()) names.emplace_back(emitter_texture);
     if (!lights.maps.empty()) names.emplace_back(map_texture);
     return names;
 }

@@ -15,7 +15,8 @@
 //       paraboloid_tessellation segments at most: 1 is the method as published, good for fine meshes only; 8 still
 //       shade whole patches of a ceiling of few triangles with a lamp under it (Conference) wrongly.
 // Spot lights have one view of their cone, directional lights an orthographic view fitted to the scene's bounds; both
-// are filtered over pcf_radius texels. Emissive surfaces have a cube around each of their sample points.
+// are filtered over pcf_radius texels. Emissive surfaces have a cube around each of their sample points, which moves
+// along with them.
 //   Good for: any number of lights within memory. Bad for: lamps inside narrow shades (what is closer than a centimetre
 //   casts no shadow), penumbras of large emitters unless direct.shadow.emitter_samples is raised, and those of suns: a
 //   directional light's angular radius is not simulated; a pcf_radius of (half the penumbra's width) / (texel) can
@@ -29,6 +30,7 @@
 #include <vector>
 
 #include "rasterizer/light_set.h"
+#include "rasterizer/moving_emitters.h"
 #include "rasterizer/pass.h"
 #include "rasterizer/scene_geometry.h"
 
@@ -47,12 +49,17 @@ private:
         glm::mat4 clip_from_world{1.0f};  // flat and cube_face
         ShadowCube cube = {};             // the others
         int first_layer = 0;              // whole_cube
+        int face = 0;                     // cube_face
         float side = 1.0f;                // paraboloid: 1 the half towards +z, -1 the other
+        int emitter_cube = -1;            // of an emitter: index into LightSet::emitter_cubes
         bool clips() const { return glm::vec3(cube.front_plane) != glm::vec3(0.0f); }
     };
-    void add_cubes(PlaneTextures& planes, const std::string& name, const std::vector<ShadowCube>& cubes, int size);
-    void add_paraboloids(PlaneTextures& planes, const std::vector<ShadowCube>& cubes, int size);
-    void add_maps(PlaneTextures& planes, const std::vector<ShadowMap>& maps, int size);
+    // Each for a texture that somebody reads.
+    void add_cubes(const PassResources& resources, const std::string& name, const std::vector<ShadowCube>& cubes,
+                   int size);
+    void add_paraboloids(const PassResources& resources, const std::vector<ShadowCube>& cubes, int size);
+    void add_maps(const PassResources& resources, const std::vector<ShadowMap>& maps, int size);
+    void follow_emitters(const PassFrame& frame);
     void find_programs(ProgramCache& programs);
     void draw(const Target& target) const;
     void set_uniforms(const Program& program, const Target& target) const;
@@ -63,6 +70,8 @@ private:
     const Scene& scene_;
     const ShadowSettings settings_;
     const SceneGeometry& geometry_;
+    LightSet lights_;
+    MovingEmitters moving_;
     std::vector<GlFramebuffer> framebuffers_;
     std::vector<Target> targets_;
     std::vector<MaterialVariant> coverage_;  // per variant of the geometry
@@ -71,7 +80,7 @@ private:
 };
 
 // Names of the shadow textures that the scene's lights need.
-std::vector<std::string> shadow_textures(const LightSet& lights);
+std::vector<std::string> shadow_textures(const LightSet& lights, LightKinds kinds = LightKinds::all);
 // The defines of shadow_lookup.glsl.
 ShaderDefines shadow_defines(const LightSet& lights, const ShadowSettings& settings);
 PassDeclaration declare_shadows(const LightSet& lights, const Method& method);
