@@ -177,6 +177,8 @@ ReflectionPass::ReflectionPass(const PassResources& resources)
       area_(resources, {0, 0}) {
     const std::string fallback = fallback_plane(resources.scene, resources.method, resources.quantities);
     if (!fallback.empty()) fallback_ = &resources.planes.get(fallback);
+    const SurfaceRadiance surfaces(resources.scene, resources.method, resources.quantities);
+    finds_light_ = chain_ || fallback_ || surfaces.direct || surfaces.emission || surfaces.indirect;
 }
 
 void ReflectionPass::execute(const PassFrame& frame) {
@@ -190,10 +192,13 @@ void ReflectionPass::execute(const PassFrame& frame) {
     if (fallback_) fallback_->bind(ReflectionUnits::fallback);
     sources_.bind();
     specular_albedo_.bind(ReflectionUnits::specular_albedo);
-    draw_.program().set("thickness",
-                        thickness_ > 0.0f ? thickness_ : separation_in_metres(gbuffer_, frame.view.camera()));
+    // A driver finds out that rays are of no use where they can bring nothing.
+    if (finds_light_) {
+        draw_.program().set("thickness",
+                            thickness_ > 0.0f ? thickness_ : separation_in_metres(gbuffer_, frame.view.camera()));
+    }
     const InnerArea::Restriction restriction(area_);
-    if (rays_ == 0) {
+    if (rays_ == 0 || !finds_light_) {
         draw_.draw(target_);
         return;
     }

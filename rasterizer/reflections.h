@@ -40,8 +40,8 @@
 //   tracer's `reflection` also holds what passes straight through transparent sheets, which this does not.
 #pragma once
 
+#include "rasterizer/bilateral_blur.h"
 #include "rasterizer/fullscreen.h"
-#include "rasterizer/inner_area.h"
 #include "rasterizer/light_set.h"
 #include "rasterizer/pass.h"
 #include "rasterizer/radiance_mip_chain.h"
@@ -65,6 +65,7 @@ private:
     const GlTexture* chain_ = nullptr;
     const GlTexture* lamps_ = nullptr;
     const GlTexture* fallback_ = nullptr;
+    bool finds_light_ = false;  // without, only the plane of highlights is left
     SurfaceRadiancePlanes sources_;
     const GlTexture& specular_albedo_;
     FullscreenDraw draw_;

@@ -2,13 +2,16 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "layer_upload.h"
+#include "radiance_counterpart.h"
 #include "rasterizer/environment_maps_pass.h"
+#include "rasterizer/gbuffer_planes.h"
 #include "rasterizer/pass_plan.h"
 #include "rasterizer/reflections.h"
 #include "rasterizer/texture_transfer.h"
@@ -29,33 +32,69 @@ inline counterpart::Gloss even_gloss(const View& view, const glm::vec3& f0, floa
     return gloss;
 }
 
+// What there is besides the layers for rays to find.
+struct ReflectionSurroundings {
+    ReflectionSurroundings(const glm::vec3& sky = glm::vec3(0.0f)) { environment.environment.radiance = sky; }
+
+    Scene environment;                   // its environment is that of the scene
+    counterpart::Radiance probe = {};    // what a probe sees
+    std::optional<Image> indirect = {};  // of the first layer, guard band included
+};
+
+// A probe that sees what a test says.
+class GivenProbePass final : public Pass {
+public:
+    GivenProbePass(const PassResources& resources, const counterpart::Radiance& radiance)
+        : maps_(resources, "probe", resources.method.probe.size, resources.method.environment.samples) {
+        const GlTexture& cube = resources.planes.get("probe.radiance");
+        for (int face = 0; face < 6; ++face) {
+            Image seen(cube.width(), cube.width(), 3);
+            for (int y = 0; y < cube.width(); ++y) {
+                for (int x = 0; x < cube.width(); ++x) {
+                    const glm::dvec3 value = radiance(counterpart::direction_of(face, x, y, cube.width()));
+                    for (int c = 0; c < 3; ++c) seen.at(x, y, c) = static_cast<float>(value[c]);
+                }
+            }
+            upload(cube, face, seen);
+        }
+    }
+    void execute(const PassFrame&) override { maps_.filter(); }
+
+private:
+    RadianceMaps maps_;
+};
+
 class ReflectionRun {
 public:
-    // `sky`: the constant environment that the method may fall back on.
     ReflectionRun(GlContext& context, counterpart::Layers layers, const counterpart::Gloss& gloss, Method method,
-                  Quantities quantities, const glm::vec3& sky = glm::vec3(0.0f))
+                  Quantities quantities, const ReflectionSurroundings& surroundings = {})
         : context_(context),
           layers_(std::move(layers)),
           method_(std::move(method)),
           quantities_(std::move(quantities)),
+          scene_(surroundings.environment),
           planes_(context, layers_.width(), layers_.height()),
-          programs_(context),
+          programs_(context, gbuffer_defines(method_)),
           view_uniforms_(context) {
         // Something glossy to reflect and an environment; nothing of it is drawn.
         scene_.materials.resize(1);
         scene_.materials[0].metallic = 1.0f;
         scene_.meshes.resize(1);
         scene_.instances.resize(1);
-        scene_.environment.radiance = sky;
         upload_layers(planes_, layers_);
+        if (surroundings.indirect) upload(planes_.create("indirect", GL_RGBA32F, 1), 0, *surroundings.indirect);
         upload_gloss(gloss);
         view_uniforms_.update(layers_.view, layers_.view, method_.gbuffer.guard_band);
         std::vector<PassDeclaration> declarations = {
             {"given",
              {},
-             {"depth", "normal", "direct", "specular", "roughness", "layer2.depth", "layer2.normal", "layer2.direct"},
+             {"depth", "normal", "direct", "camera_position", "specular", "roughness", "indirect", "layer2.depth",
+              "layer2.normal", "layer2.direct", "layer2.camera_position"},
              [](const PassResources&) { return nullptr; }}};
         declarations.push_back(declare_environment_maps(scene_, method_));
+        declarations.push_back({"probe", {}, RadianceMaps::outputs("probe"), [&](const PassResources& resources) {
+                                    return std::make_unique<GivenProbePass>(resources, surroundings.probe);
+                                }});
         const LightSet no_lights(scene_, method_.direct);
         for (PassDeclaration& pass : declare_reflections(scene_, no_lights, method_, quantities_))
             declarations.push_back(std::move(pass));
