@@ -114,6 +114,53 @@ TEST(Encodings, EveryPassReadsEveryNormalFormat) {
     }
 }
 
+// The passes that only some methods have: reflections and highlights, light volumes, and the filter over frames.
+TEST(Encodings, PassesOfFurtherMethodsReadNormalsHoweverTheyAreEncoded) {
+    GlContext& context = test_context(GlBackend::egl);
+    Scene scene = make_cornell();
+    // Wide lobes, so that reflections and highlights change as slowly with the normal as cosines do.
+    for (Material& material : scene.materials) {
+        material.dielectric_reflectance = 0.08f, material.roughness = 1.0f;
+        material.emission = glm::vec3(0.0f);  // one shader less to compile for each format
+    }
+    const Bounds room = scene.bounds();
+    scene.point_lights.push_back({"lamp", room.centre(), glm::vec3(1.0f)});
+    const std::vector<std::string> planes{"reflection", "reflection.lamps", "direct", "ao", "ao.history_weight"};
+    const auto second_frame = [&](NormalFormat format) {
+        Method method = with_normals(format);
+        method.radiosity.enabled = false;
+        method.reflections.enabled = true;
+        method.reflections.roughness = ReflectionRoughness::mirror;
+        method.direct.local_lights = LocalLights::volume_stencil;
+        method.direct.shadow.lamps = false;
+        method.ao.blur.radius = 0;
+        // What lies off the plane through a pixel by a millimetre counts less, so that the filter looks at normals.
+        method.ao.temporal = {.alpha = 0.5f, .reject_from = 0.0f, .reject_to = 0.02f};
+        Quantities quantities;
+        quantities.planes = planes;
+        Camera camera = scene.cameras[0];
+        const View first(camera, width, height);
+        camera.world_from_camera[3].x += 0.02f;
+        const View second(camera, width, height);
+        Pipeline pipeline(context, scene, method, quantities, width, height);
+        pipeline.render(first);
+        return pipeline.render(second, &first).frame;
+    };
+    const Frame exact = second_frame(NormalFormat::rgb32f);
+    // One for each way of decoding.
+    for (const NormalFormat format : {NormalFormat::oct32, NormalFormat::rgb10a2, NormalFormat::xy8}) {
+        const Frame frame = second_frame(format);
+        for (const std::string& plane : planes) {
+            const auto a = frame.plane(plane).values(), b = exact.plane(plane).values();
+            double difference = 0.0, sum = 0.0;
+            for (std::size_t i = 0; i < a.size(); ++i) difference += std::abs(a[i] - b[i]), sum += std::abs(b[i]);
+            EXPECT_GT(sum, 1.0) << plane;
+            // As above; what rays hit changes by edges besides.
+            EXPECT_LT(difference, 0.05 * sum) << plane << ", format " << static_cast<int>(format);
+        }
+    }
+}
+
 // Through EGL alone: what takes time is compiling shaders, and both compile the same.
 TEST(Encodings, StoredPositionsAreThoseOfTheDepth) {
     GlContext& context = test_context(GlBackend::egl);
