@@ -1,4 +1,6 @@
 // The choice among lights and of points on them, and the densities per solid angle that the samples carry.
+#include <numeric>
+
 #include <gtest/gtest.h>
 
 #include "chi_square.h"
@@ -138,6 +140,58 @@ TEST(LightChoice, SamplesCarryTheirDensity) {
     EXPECT_LE(at_edges, 2);  // 1e-6 of an area lies that near to an edge
 }
 
+// The sky's samples are those of its texels by their light, each evenly spread in texture coordinates.
+TEST(LightChoice, SamplesOfASkyCarryTheirDensity) {
+    Scene scene = sky_scene();
+    add_quads(scene, add_material(scene, glm::vec3(0.5f), glm::vec3(2.0f)), {floor_quad(0.5f, 2.0f)});
+    const TracedScene traced(scene);
+    const EnvironmentDistribution environment(scene);
+    const LightTable lights(traced, environment, EmitterSampling::both);
+    const Texture& sky = scene.textures[0];
+    constexpr double pi = glm::pi<double>();
+    // Luminance times solid angle. Between the centres of texels the sky is bilinear, for which the midpoint rule is
+    // exact where no step spans a centre.
+    std::vector<double> texels;
+    for (int i = 0; i < sky.width * sky.height; ++i) {
+        const int row = i / sky.width, column = i % sky.width;
+        constexpr int steps = 8;
+        double sum = 0.0;
+        for (int j = 0; j < steps * steps; ++j) {
+            const int y = j / steps, x = j % steps;
+            const glm::dvec2 uv((column + (x + 0.5) / steps) / sky.width, (row + (y + 0.5) / steps) / sky.height);
+            sum += luminance(scene.environment.radiance * glm::vec3(sky.sample(glm::vec2(uv)))) / (steps * steps);
+        }
+        const double top = std::cos(pi * row / sky.height), bottom = std::cos(pi * (row + 1) / sky.height);
+        texels.push_back(sum * (top - bottom) * 2.0 * pi / sky.width);
+    }
+    const double total = std::accumulate(texels.begin(), texels.end(), 0.0);
+    int of_the_sky = 0, at_edges = 0;
+    constexpr int samples = 20000;
+    for (int i = 0; i < samples; ++i) {
+        const glm::vec2 u = IndependentNumbers(5, i).u;
+        const LightSample sample = lights.sample_extended(receiver, u.x, u.y);
+        if (sample.farthest == 1.0f) continue;
+        ++of_the_sky;
+        double turn = 0.5 + (std::atan2(sample.direction.x, -sample.direction.z) + 1.3) / (2.0 * pi);
+        turn -= std::floor(turn);
+        const double theta = std::atan2(std::hypot(sample.direction.x, sample.direction.z), sample.direction.y);
+        const int column = std::min(static_cast<int>(turn * sky.width), sky.width - 1);
+        const int row = std::min(static_cast<int>(theta / pi * sky.height), sky.height - 1);
+        const double probability = 0.5 * texels[static_cast<std::size_t>(row * sky.width + column)] / total;
+        const double expected = probability * sky.width * sky.height / (2.0 * pi * pi * std::sin(theta));
+        // Directions within rounding of a texel's edge may be found on its other side.
+        const double error = std::abs(sample.density - expected) / sample.density;
+        if (error > 0.01) {
+            ++at_edges;
+        } else {
+            // Roundings of float32; near a pole those of the direction weigh more.
+            EXPECT_LT(error, 1e-5 + 1e-7 / std::sin(theta)) << "sample " << i << ": " << sample.density;
+        }
+    }
+    EXPECT_NEAR(of_the_sky, samples / 2, 4.5 * std::sqrt(samples) / 2.0);
+    EXPECT_LE(at_edges, 2);  // 1e-6 of an area lies that near to an edge
+}
+
 // Half of the samples go to an environment image, the rest to the lamps by power.
 TEST(LightChoice, SharesWithAnEnvironmentImage) {
     Lamps lamps;
@@ -161,6 +215,105 @@ TEST(LightChoice, SharesWithAnEnvironmentImage) {
             return lamp_cell(lamps, sample.direction) / 8;
         },
         Uses::first);
+}
+
+// Points and spots in five directions, besides one below the horizon and one that faces away, with a parallel light.
+// What each sends to the receiver at the origin by the formulas of scenes/lights.h, in double.
+struct Arriving {
+    glm::dvec3 direction, radiance;  // irradiance on a surface that faces it
+    double weight() const { return luminance(glm::vec3(radiance)) * std::max(0.0, direction.y); }
+};
+struct LampsWithoutExtent {
+    Scene scene;
+    std::vector<Arriving> arriving;
+
+    LampsWithoutExtent() {
+        point({{1, 2, 0}, {12, 6, 18}, {0.5f, 0.2f, 1.0f}});
+        point({{-1, 1, 1}, {22, 22, 11}});
+        point({{0, -1, 0}, glm::vec3(50.0f)});
+        spot({0, 1.5f, -2}, {0.1f, -1.5f, 2.1f}, glm::vec3(9, 8, 7));
+        spot({2, 1, 2}, {1, 0, 0}, glm::vec3(40.0f));
+        spot({-2, 1.5f, -1}, {2.1f, -1.4f, 1}, glm::vec3(18, 20, 5));
+        const glm::vec3 sun = glm::normalize(glm::vec3(-2, -1, 1)), irradiance(1, 2, 3);
+        scene.directional_lights.push_back({"sun", sun, irradiance});
+        arriving.push_back({-sun, irradiance});
+    }
+
+    struct Point {
+        glm::vec3 position, intensity;
+        Attenuation attenuation = {};
+    };
+    void point(const Point& lamp) {
+        scene.point_lights.push_back({"point", lamp.position, lamp.intensity, lamp.attenuation});
+        const double d = glm::length(glm::dvec3(lamp.position));
+        const Attenuation& a = lamp.attenuation;
+        arriving.push_back({glm::dvec3(lamp.position) / d,
+                            glm::dvec3(lamp.intensity) / (a.constant + a.linear * d + a.quadratic * d * d)});
+    }
+    void spot(const glm::vec3& position, const glm::vec3& towards, const glm::vec3& intensity) {
+        constexpr float inner = 0.02f, outer = 0.3f;
+        const glm::vec3 axis = glm::normalize(towards);
+        scene.spot_lights.push_back({"spot", position, axis, intensity, inner, outer});
+        const double d = glm::length(glm::dvec3(position)), from = std::cos(inner), to = std::cos(outer);
+        const glm::dvec3 direction = glm::dvec3(position) / d;
+        const double t = std::clamp((-glm::dot(direction, glm::dvec3(axis)) - to) / (from - to), 0.0, 1.0);
+        arriving.push_back({direction, glm::dvec3(intensity) * (t * t / (d * d))});
+    }
+
+    double sum() const {
+        double sum = 0.0;
+        for (const Arriving& light : arriving) sum += light.weight();
+        return sum;
+    }
+    // Whose direction that is.
+    int find(const glm::vec3& direction) const {
+        int nearest = 0;
+        for (std::size_t i = 1; i < arriving.size(); ++i) {
+            const double cosine = glm::dot(arriving[i].direction, glm::dvec3(direction));
+            if (cosine > glm::dot(arriving[static_cast<std::size_t>(nearest)].direction, glm::dvec3(direction))) {
+                nearest = static_cast<int>(i);
+            }
+        }
+        return nearest;
+    }
+};
+
+TEST(LightsWithoutExtent, AreChosenByWhatTheyBring) {
+    const LampsWithoutExtent lamps;
+    const TracedScene traced(lamps.scene);
+    const EnvironmentDistribution none(lamps.scene);
+    const LightTable lights(traced, none, EmitterSampling::both);
+    std::vector<double> probabilities;
+    int lit = 0;
+    for (const Arriving& light : lamps.arriving) {
+        probabilities.push_back(light.weight() / lamps.sum());
+        lit += probabilities.back() > 0.05 ? 1 : 0;
+    }
+    ASSERT_EQ(lit, 5);
+    // What falls to a later lamp is taken from all over the interval, which averages half of the tilt away.
+    expect_density(
+        "lights without extent", probabilities, Rejection::never,
+        [&](glm::vec2 u) { return lamps.find(lights.sample_without_extent(receiver, u.x).direction); }, Uses::first,
+        0.4);
+}
+
+// The sample is the light's own radiance over the probability of its choice, so that the mean is the sum of all.
+TEST(LightsWithoutExtent, CountForAllWhereOneIsChosen) {
+    const LampsWithoutExtent lamps;
+    const TracedScene traced(lamps.scene);
+    const EnvironmentDistribution none(lamps.scene);
+    const LightTable lights(traced, none, EmitterSampling::both);
+    for (int i = 0; i < 10000; ++i) {
+        const LightSample sample = lights.sample_without_extent(receiver, IndependentNumbers(8, i).u.x);
+        const Arriving& light = lamps.arriving[static_cast<std::size_t>(lamps.find(sample.direction))];
+        for (int c = 0; c < 3; ++c) {
+            // Some ten roundings of float32; a spot's fading takes the difference of two cosines, which loses as many
+            // digits as it is smaller than they: one.
+            EXPECT_NEAR(sample.radiance[c] * light.weight() / lamps.sum(), light.radiance[c], 1e-5 * light.radiance[c])
+                << i;
+        }
+        EXPECT_EQ(sample.density, 0.0f);
+    }
 }
 
 }  // namespace

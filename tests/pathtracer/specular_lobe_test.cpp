@@ -298,5 +298,56 @@ TEST(Scattering, DirectionsHaveTheMixedDensity) {
         [&](glm::vec2 u) { return cell(scattering.sample(third_number(u), u)); }, Uses::both, kept);
 }
 
+// What passes and what a mirror reflects have a direction of their own, and a probability instead of a density.
+TEST(Scattering, PassesAndMirrorsWithTheirShares) {
+    const glm::vec3 wo = direction_at(0.6f), albedo(0.5f, 0.2f, 0.1f), specular(0.1f, 0.3f, 0.2f);
+    const glm::vec3 transmission(0.05f, 0.1f, 0.2f);
+    for (const float alpha : {0.0f, 0.15f}) {
+        SpecularVertex vertex;
+        vertex.surface.f0 = glm::vec3(0.3f), vertex.surface.f90 = glm::vec3(1.0f), vertex.surface.alpha = alpha;
+        vertex.to_viewer = wo;
+        const Scattering scattering(vertex, normal, albedo, specular, transmission);
+        // By the brightest channel of each: diffuse 0.5, specular 0.3, passing 0.2.
+        constexpr double passing_share = 0.2, mirrored_share = 0.3;
+        const DirectionCells cells(normal, 4);
+        auto probabilities =
+            cells.integrals([&](const glm::vec3& direction) { return scattering.evaluate(direction).density; });
+        const int passed = static_cast<int>(probabilities.size()), mirrored = passed + 1;
+        probabilities.push_back(passing_share);
+        if (alpha == 0.0f) probabilities.push_back(mirrored_share);
+        const auto cell = [&](const ScatterSample& sample) {
+            if (sample.passes) return passed;
+            if (sample.weight == glm::vec3(0.0f)) return -1;
+            return sample.density > 0.0f ? cells.cell(sample.direction) : mirrored;
+        };
+        const std::string name = "panes of alpha " + std::to_string(alpha);
+        const Rejection rejection = alpha == 0.0f ? Rejection::never : Rejection::possible;
+        expect_density(
+            name + ", choice of the lobe", probabilities, rejection,
+            [&](glm::vec2 u) {
+                return cell(scattering.sample(u.x, {u.y, third_number(u)}));
+            },
+            Uses::first, 0.6);
+        const ScatterSample through = scattering.sample(0.1f, {0.3f, 0.7f});
+        ASSERT_TRUE(through.passes);
+        EXPECT_EQ(through.direction, -wo);
+        EXPECT_EQ(through.density, 0.0f);
+        // Divided by the probability, each to one rounding.
+        for (int c = 0; c < 3; ++c) EXPECT_FLOAT_EQ(through.weight[c], transmission[c] / 0.2f);
+        if (alpha > 0.0f) continue;  // the rest is that of DirectionsHaveTheMixedDensity
+        // The numbers of the direction show only where the diffuse lobe was chosen.
+        expect_density(
+            name + ", direction", probabilities, rejection,
+            [&](glm::vec2 u) { return cell(scattering.sample(third_number(u), u)); }, Uses::both, 0.35);
+        const ScatterSample reflected = scattering.sample(0.4f, {0.3f, 0.7f});
+        EXPECT_FALSE(reflected.passes);
+        EXPECT_EQ(reflected.density, 0.0f);
+        EXPECT_LT(glm::length(reflected.direction - (2.0f * 0.6f * normal - wo)), 1e-6f);
+        const float fresnel = 0.3f + 0.7f * std::pow(0.4f, 5.0f);
+        // 1e-6: the fifth power of a cosine that is off by a rounding.
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(reflected.weight[c], fresnel / 0.3f, 1e-6f);
+    }
+}
+
 }  // namespace
 }  // namespace plumb
