@@ -219,6 +219,68 @@ TEST(GBuffer, SeenBeforeAsksTheSceneAsItStoodThen) {
     }
 }
 
+// Nothing but sky behind the square, which has left for another place: what lies infinitely far away was seen where the
+// square was not.
+TEST(GBuffer, BackgroundWasSeenBeforeWhereNothingStoodBeforeIt) {
+    Scene scene;
+    add_quads(scene, add_material(scene, glm::vec3(0.5f)), {screen(2.0f, 0.5f)});
+    scene.instances[0].motion.keys = {{.time = 0.0f}, {.time = 1.0f, .translation = {100.0f, 0.0f, 0.0f}}};
+    scene.move_to(1.0);
+    // The previous camera stood where this one does but looked a little aside: what it did not frame it did not see.
+    const View view = forward_view(64), aside = view_of({0, 0, 0}, {0.2f, 0, -1}, 1.0f, 64);
+    const glm::vec3 axis = glm::normalize(glm::vec3(0.2f, 0, -1)), across = glm::normalize(glm::vec3(1, 0, 0.2f));
+    const Frame frame = PathTracer(scene, {0.0, 1.0}).gbuffer(view, {.layers = 1, .previous_view = &aside});
+    int seen = 0, hidden = 0, outside = 0;
+    for (int y = 0; y < 64; ++y) {
+        for (int x = 0; x < 64; ++x) {
+            ASSERT_EQ(frame.plane("instance").at(x, y), -1.0f);
+            const glm::vec3 direction =
+                view.pixel_ray(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f).direction;
+            const glm::vec2 crossing = glm::vec2(direction) * (2.0f / -direction.z);
+            const float to_square = std::max(std::abs(crossing.x), std::abs(crossing.y)) - 0.5f;
+            const glm::vec2 on_screen =
+                glm::vec2(glm::dot(direction, across), direction.y) / (glm::dot(direction, axis) * std::tan(0.5f));
+            const float to_frame = std::max(std::abs(on_screen.x), std::abs(on_screen.y)) - 1.0f;
+            if (std::abs(to_square) < 1e-4f || std::abs(to_frame) < 1e-4f) continue;  // either answer is right
+            const bool expected = to_square > 0.0f && to_frame < 0.0f;
+            EXPECT_EQ(frame.plane("seen_before").at(x, y), expected ? 1.0f : 0.0f) << x << ", " << y;
+            seen += expected ? 1 : 0, hidden += to_square < 0.0f ? 1 : 0, outside += to_frame > 0.0f ? 1 : 0;
+        }
+    }
+    EXPECT_GT(seen, 1000);
+    EXPECT_GT(hidden, 100);
+    EXPECT_GT(outside, 100);
+}
+
+// What the square hides now, and the previous camera, one metre to the right, saw past it or did not.
+TEST(GBuffer, TheSecondLayerWasSeenBeforeWhereThePreviousCameraLookedPastTheFirst) {
+    Scene scene;
+    const int white = add_material(scene, glm::vec3(0.5f));
+    add_quads(scene, white, {screen(4.0f)});
+    add_quads(scene, white, {screen(2.0f, 0.7f)});
+    const View now = forward_view(64), before = view_of({1, 0, 0}, {1, 0, -1}, 1.0f, 64);
+    const PathTracer tracer(scene);
+    const Frame frame = tracer.gbuffer(now, {.previous_view = &before}), still = tracer.gbuffer(now);
+    int seen = 0, hidden = 0;
+    for (int y = 0; y < 64; ++y) {
+        for (int x = 0; x < 64; ++x) {
+            if (std::isinf(frame.plane("layer2.depth").at(x, y))) continue;
+            EXPECT_EQ(still.plane("layer2.seen_before").at(x, y), 0.0f) << x << ", " << y;
+            const glm::vec3 from_before = colour_at(frame.plane("layer2.position"), x, y) - glm::vec3(1, 0, 0);
+            const glm::vec2 on_screen = glm::vec2(from_before) / (-from_before.z * std::tan(0.5f));
+            const glm::vec2 crossing = glm::vec2(1, 0) + glm::vec2(from_before) * (2.0f / -from_before.z);
+            const float to_square = std::max(std::abs(crossing.x), std::abs(crossing.y)) - 0.7f;
+            const float to_frame = std::max(std::abs(on_screen.x), std::abs(on_screen.y)) - 1.0f;
+            if (std::abs(to_square) < 1e-4f || std::abs(to_frame) < 1e-4f) continue;  // either answer is right
+            const bool expected = to_square > 0.0f && to_frame < 0.0f;
+            EXPECT_EQ(frame.plane("layer2.seen_before").at(x, y), expected ? 1.0f : 0.0f) << x << ", " << y;
+            seen += expected ? 1 : 0, hidden += to_square < 0.0f ? 1 : 0;
+        }
+    }
+    EXPECT_GT(seen, 50);
+    EXPECT_GT(hidden, 50);
+}
+
 TEST(GBuffer, PositionAgreesWithDepthAndTheCamera) {
     const Scene scene = make_cornell();
     const View view(scene.cameras[1], 32, 24);
