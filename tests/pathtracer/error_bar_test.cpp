@@ -12,13 +12,14 @@
 namespace plumb {
 namespace {
 
-constexpr int runs = 200, samples = 32, size = 32;
-const std::vector<std::string> planes = {"ao", "direct", "indirect"};
+constexpr int samples = 32;
 
-// A coloured room with a lamp and a square light; something of everything: corners, shadows, bounces.
-Scene small_scene() {
+// A coloured room with a lamp and a square light; something of everything: corners, shadows, bounces. `glossy`: with a
+// gloss over its walls.
+Scene small_scene(bool glossy) {
     Scene scene;
     add_quads(scene, add_material(scene, {0.7f, 0.5f, 0.3f}), room_quads());
+    if (glossy) scene.materials[0].dielectric_reflectance = 0.04f, scene.materials[0].roughness = 0.5f;
     add_quads(scene, add_material(scene, glm::vec3(0.3f), glm::vec3(5.0f)),
               {{{-0.5f, 0.9f, -0.5f}, {0.5f, 0.9f, -0.5f}, {0.5f, 0.9f, 0.5f}, {-0.5f, 0.9f, 0.5f}}});
     add_quads(scene, 0, {floor_quad(0.3f, -0.5f)});
@@ -26,30 +27,38 @@ Scene small_scene() {
     return scene;
 }
 
-View small_scene_view() { return view_of({0, 0, 0.9f}, {0.1f, -0.6f, -0.8f}, 1.0f, size); }
+View small_scene_view(int size) { return view_of({0, 0, 0.9f}, {0.1f, -0.6f, -0.8f}, 1.0f, size); }
 
 // All runs, and one of 64 times as many samples: its own error is an eighth of theirs at most, which adds less than 1 %
 // to what they differ by.
 struct Runs {
+    std::vector<std::string> planes;
     std::vector<Frame> frames;
     Frame truth;
 };
-const Runs& all_runs() {
-    static const Runs result = [] {
-        const Scene scene = small_scene();
-        const PathTracer tracer(scene);
-        const View view = small_scene_view();
-        Runs r;
-        auto settings = settings_for(planes, samples, 2);
-        for (std::uint64_t seed = 1; seed <= runs; ++seed) {
-            settings.seed = seed;
-            r.frames.push_back(tracer.render(view, settings).frame);
-        }
-        settings.seed = 1000, settings.samples = 64 * samples;
-        r.truth = tracer.render(view, settings).frame;
-        return r;
-    }();
-    return result;
+Runs make_runs(bool glossy, std::vector<std::string> planes, int bounces, int size, std::uint64_t count) {
+    const Scene scene = small_scene(glossy);
+    const PathTracer tracer(scene);
+    const View view = small_scene_view(size);
+    Runs runs;
+    auto settings = settings_for(planes, samples, bounces);
+    for (std::uint64_t seed = 1; seed <= count; ++seed) {
+        settings.seed = seed;
+        runs.frames.push_back(tracer.render(view, settings).frame);
+    }
+    settings.seed = 1000, settings.samples = 64 * samples;
+    runs.truth = tracer.render(view, settings).frame;
+    runs.planes = std::move(planes);
+    return runs;
+}
+const Runs& diffuse_runs() {
+    static const Runs runs = make_runs(false, {"ao", "direct", "indirect"}, 2, 32, 200);
+    return runs;
+}
+// Paths through gloss take several times as long: half as many runs of a quarter of the pixels.
+const Runs& glossy_runs() {
+    static const Runs runs = make_runs(true, {"direct", "reflection"}, 1, 16, 100);
+    return runs;
 }
 
 // The share of intervals that contain the long run's answer has to lie between 90 and 99 %. `count` independent
@@ -60,46 +69,61 @@ void expect_coverage(int inside, int count, const std::string& what) {
     EXPECT_LE(share, 0.99) << what << ": " << inside << " of " << count;
 }
 
-// The variance planes have one degree of freedom per pixel; over a block of 64 or more pixels they make an interval for
-// the block's mean: 1.96 standard errors. Runs and blocks are independent: 3200 intervals of 64 pixels.
-TEST(ErrorBars, OfVariancePlanesContainTheLongRunsAnswer) {
-    const Runs& all = all_runs();
-    for (const std::string& plane : planes) {
-        for (const int block : {8, 16}) {
-            int inside = 0, count = 0;
-            for (const Frame& frame : all.frames) {
-                for (int i = 0; i < size / block * (size / block); ++i) {
-                    const int left = i % (size / block) * block, top = i / (size / block) * block;
-                    double difference = 0.0, variance = 0.0;
-                    for (int y = top; y < top + block; ++y) {
-                        for (int x = left; x < left + block; ++x) {
-                            difference += frame.plane(plane).at(x, y) - all.truth.plane(plane).at(x, y);
-                            variance += frame.plane("variance." + plane).at(x, y);
-                        }
-                    }
-                    inside += std::abs(difference) <= 1.96 * std::sqrt(variance) ? 1 : 0, ++count;
-                }
-            }
-            expect_coverage(inside, count, fmt::format("{}, blocks of {} pixels", plane, block));
+bool contains_truth(const Frame& frame, const Frame& long_run, const std::string& plane, int channel, int left, int top,
+                    int block) {
+    const Image &mean = frame.plane(plane), &truth = long_run.plane(plane);
+    const Image& variance_of_mean = frame.plane("variance." + plane);
+    double difference = 0.0, variance = 0.0;
+    for (int y = top; y < top + block; ++y) {
+        for (int x = left; x < left + block; ++x) {
+            difference += mean.at(x, y, channel) - truth.at(x, y, channel);
+            variance += variance_of_mean.at(x, y, channel);
         }
     }
+    return std::abs(difference) <= 1.96 * std::sqrt(variance);
+}
+
+void expect_coverage_of_blocks(const Runs& runs, int block) {
+    const int across = runs.truth.width() / block;
+    for (const std::string& plane : runs.planes) {
+        for (int channel = 0; channel < runs.truth.plane(plane).channels(); ++channel) {
+            int inside = 0, count = 0;
+            for (const Frame& frame : runs.frames) {
+                for (int i = 0; i < across * across; ++i) {
+                    const int left = i % across * block, top = i / across * block;
+                    inside += contains_truth(frame, runs.truth, plane, channel, left, top, block) ? 1 : 0, ++count;
+                }
+            }
+            expect_coverage(inside, count, fmt::format("{}, channel {}, blocks of {} pixels", plane, channel, block));
+        }
+    }
+}
+
+// The variance planes have one degree of freedom per pixel; over a block of 64 or more pixels they make an interval for
+// the block's mean: 1.96 standard errors. Runs and blocks are independent: for each channel 3200 intervals of 64
+// pixels, of gloss 400.
+TEST(ErrorBars, OfVariancePlanesContainTheLongRunsAnswer) {
+    expect_coverage_of_blocks(diffuse_runs(), 8);
+    expect_coverage_of_blocks(diffuse_runs(), 16);
+    expect_coverage_of_blocks(glossy_runs(), 8);
 }
 
 // The standard error that the variance planes claim is that of the runs' true errors: 200 runs of 1024 pixels, whose
 // errors squared spread about as the squares of normal numbers do, give the ratio to within 1 %, heavy tails to within
 // some; 10 % is the 5 % in standard error that would change nobody's mind.
 TEST(ErrorBars, OfVariancePlanesAreTheTrueErrorsOnAverage) {
-    const Runs& all = all_runs();
-    for (const std::string& plane : planes) {
-        double claimed = 0.0, found = 0.0;
-        for (const Frame& frame : all.frames) {
-            const auto mean = frame.plane(plane).values(), truth = all.truth.plane(plane).values();
-            for (const float variance : frame.plane("variance." + plane).values()) claimed += variance;
-            for (std::size_t i = 0; i < mean.size(); ++i) {
-                found += (static_cast<double>(mean[i]) - truth[i]) * (static_cast<double>(mean[i]) - truth[i]);
+    for (const Runs* runs : {&diffuse_runs(), &glossy_runs()}) {
+        for (const std::string& plane : runs->planes) {
+            double claimed = 0.0, found = 0.0;
+            for (const Frame& frame : runs->frames) {
+                const auto mean = frame.plane(plane).values(), truth = runs->truth.plane(plane).values();
+                for (const float variance : frame.plane("variance." + plane).values()) claimed += variance;
+                for (std::size_t i = 0; i < mean.size(); ++i) {
+                    found += (static_cast<double>(mean[i]) - truth[i]) * (static_cast<double>(mean[i]) - truth[i]);
+                }
             }
+            EXPECT_NEAR(claimed / found, 1.0, 0.1) << plane;
         }
-        EXPECT_NEAR(claimed / found, 1.0, 0.1) << plane;
     }
 }
 
@@ -129,26 +153,31 @@ WrongImage wrong_image(const Image& truth, double amplitude, bool even, unsigned
 
 // mean((I - A)(I - B)) is the true squared error on average over the runs, within four standard errors of their mean,
 // whether the error is lost in the reference's noise, like it, or far above.
+void expect_true_squared_error_on_average(const Runs& runs, const std::string& plane, double amplitude, bool even) {
+    const WrongImage wrong = wrong_image(runs.truth.plane(plane), amplitude, even, 7);
+    const auto count = static_cast<double>(runs.frames.size());
+    double sum = 0.0, squares = 0.0, plain = 0.0;
+    for (const Frame& frame : runs.frames) {
+        const ReferencedError error =
+            referenced_error(wrong.image, frame.plane("half_a." + plane), frame.plane("half_b." + plane), samples);
+        sum += error.mse / count, squares += error.mse * error.mse / count;
+        plain += error.plain_mse / count;
+    }
+    const double standard_error = std::sqrt((squares - sum * sum) / (count - 1.0));
+    const std::string what = fmt::format("{}, amplitude {}, {}", plane, amplitude, even ? "even" : "uneven");
+    EXPECT_NEAR(sum, wrong.mse, 4.0 * standard_error) << what;
+    // Without the halves it would not be: the noise adds to it.
+    if (amplitude < 0.1) {
+        EXPECT_GT(plain, wrong.mse + 10.0 * standard_error) << what;
+    }
+}
+
 TEST(ErrorBars, TheProductOfTheHalvesErrorsIsTheTrueSquaredErrorOnAverage) {
-    const Runs& all = all_runs();
-    for (const std::string& plane : planes) {
-        for (const double amplitude : {0.0, 0.03, 0.3}) {
-            for (const bool even : {true, false}) {
-                const WrongImage wrong = wrong_image(all.truth.plane(plane), amplitude, even, 7);
-                double sum = 0.0, squares = 0.0, plain = 0.0;
-                for (const Frame& frame : all.frames) {
-                    const ReferencedError error = referenced_error(wrong.image, frame.plane("half_a." + plane),
-                                                                   frame.plane("half_b." + plane), samples);
-                    sum += error.mse / runs, squares += error.mse * error.mse / runs;
-                    plain += error.plain_mse / runs;
-                }
-                const double standard_error = std::sqrt((squares - sum * sum) / (runs - 1));
-                const std::string what =
-                    fmt::format("{}, amplitude {}, {}", plane, amplitude, even ? "even" : "uneven");
-                EXPECT_NEAR(sum, wrong.mse, 4.0 * standard_error) << what;
-                // Without the halves it would not be: the noise adds to it.
-                if (amplitude < 0.1) {
-                    EXPECT_GT(plain, wrong.mse + 10.0 * standard_error) << what;
+    for (const Runs* runs : {&diffuse_runs(), &glossy_runs()}) {
+        for (const std::string& plane : runs->planes) {
+            for (const double amplitude : {0.0, 0.03, 0.3}) {
+                for (const bool even : {true, false}) {
+                    expect_true_squared_error_on_average(*runs, plane, amplitude, even);
                 }
             }
         }
@@ -162,8 +191,9 @@ TEST(ErrorBars, TheProductOfTheHalvesErrorsIsTheTrueSquaredErrorOnAverage) {
 // its own: where noise decides, the product of the halves' noise is the same for any image, and one more would add
 // nothing.
 TEST(ErrorBars, OfTheSquaredErrorContainItAsOftenAsTheySay) {
-    const Runs& all = all_runs();
-    for (const std::string& plane : planes) {
+    const Runs& all = diffuse_runs();
+    const auto runs = static_cast<unsigned>(all.frames.size());
+    for (const std::string& plane : all.planes) {
         for (const double amplitude : {0.03, 0.3}) {
             for (const bool even : {true, false}) {
                 int inside = 0;
@@ -177,7 +207,7 @@ TEST(ErrorBars, OfTheSquaredErrorContainItAsOftenAsTheySay) {
                 const std::string what =
                     fmt::format("{}, amplitude {}, {}", plane, amplitude, even ? "even" : "uneven");
                 if (even) {
-                    expect_coverage(inside, runs, what);
+                    expect_coverage(inside, static_cast<int>(runs), what);
                 } else {
                     EXPECT_GE(inside, 0.90 * runs) << what;
                 }
@@ -189,15 +219,15 @@ TEST(ErrorBars, OfTheSquaredErrorContainItAsOftenAsTheySay) {
 // A run told to stop at a relative error has it: over a quarter of the runs the true one is the target's, less what the
 // last step overshoots (each step adds an eighth to a quarter of samples).
 TEST(ErrorBars, OfARunWithATargetAreTheTarget) {
-    const Runs& all = all_runs();
-    const Scene scene = small_scene();
+    const Runs& all = diffuse_runs();
+    const Scene scene = small_scene(false);
     const PathTracer tracer(scene);
     constexpr double target = 0.2;
     double squared_error = 0.0, square = 0.0;
-    for (std::uint64_t seed = 1; seed <= runs / 4; ++seed) {
+    for (std::uint64_t seed = 1; seed <= all.frames.size() / 4; ++seed) {
         auto settings = settings_for({"indirect"}, 1024, 2);
         settings.target_error = target, settings.seed = seed;
-        const Frame frame = tracer.render(small_scene_view(), settings).frame;
+        const Frame frame = tracer.render(small_scene_view(32), settings).frame;
         const auto mean = frame.plane("indirect").values(), truth = all.truth.plane("indirect").values();
         for (std::size_t i = 0; i < mean.size(); ++i) {
             squared_error += (static_cast<double>(mean[i]) - truth[i]) * (static_cast<double>(mean[i]) - truth[i]);
