@@ -141,7 +141,6 @@ public:
 
     const SampleIndex& index() const { return index_; }
     glm::vec2 point(std::uint32_t dimension) const { return sobol_point(index_, mix_word(dimension)); }
-    float number(std::uint32_t dimension) const { return point(dimension).x; }
 
 private:
     SamplePoints points_;

@@ -237,7 +237,7 @@ TEST_P(Splitting, OfSamplesOverShardsKeepsEveryBit) {
         std::filesystem::temp_directory_path() / fmt::format("plumbline_effects_{}_{}", ::getpid(), GetParam());
     std::filesystem::create_directories(folder);
     std::vector<std::filesystem::path> shards;
-    // The first and the last fill no batch of 64; each has another number of threads.
+    // No pixel's samples of the first and the last fill a batch; each has another number of threads.
     constexpr int cuts[] = {0, 2, 30, 32};
     for (int i = 2; i >= 0; --i) {
         ReferenceSettings part = settings;

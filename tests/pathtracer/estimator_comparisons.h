@@ -65,7 +65,7 @@ inline Setting glancing_light() {
     return {"GlancingLight", std::move(scene), small_view({0.9f, 0.7f, 0.6f}, {0.6f, 0.0f, 0.3f}, 0.4f)};
 }
 
-// A rough metal, a gloss over diffuse, and a pane, under a light and a sky.
+// The room with a gloss over its diffuse walls and a lid of rough metal.
 inline Setting glossy_room() {
     Setting setting = room();
     setting.name = "GlossyRoom";
