@@ -39,7 +39,7 @@ void add_errors(const ResultRow& row, Cell& cell) {
         if (!replaced.contains(name)) cell.set(name, value);
     }
     for (const RegionError& region : row.regions) {
-        cell.set(fmt::format("rmse in {}", region.region), std::sqrt(std::max(region.mse, 0.0)));
+        if (region.measured) cell.set(fmt::format("rmse in {}", region.region), std::sqrt(std::max(region.mse, 0.0)));
         if (region.stability && region.stability->tells("flicker"))
             cell.set(fmt::format("flicker in {}", region.region), region.stability->flicker.value);
     }

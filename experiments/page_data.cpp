@@ -43,7 +43,7 @@ Json regions_json(const ResultRow& row) {
     Json regions = Json::object();
     for (const RegionError& region : row.regions) {
         regions[region.region] = {{"pixels", region.pixels},
-                                  {"rmse", root_json(region.mse)},
+                                  {"rmse", region.measured ? root_json(region.mse) : Json(nullptr)},
                                   {"lower", root_json(region.mse_lower)},
                                   {"upper", root_json(region.mse_upper)}};
     }
