@@ -2,7 +2,9 @@
 #include <algorithm>
 #include <atomic>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -79,6 +81,9 @@ struct Task {
         write_frame_files(result.frame, options.view, view.camera().name, "reference");
     }
 
+    // Large frames need the memory of what they are rendered from.
+    void forget_scene() { scene = {}; }
+
     std::string name() const { return fmt::format("{} / {}", options.view.scene, view.camera().name); }
 
     const ReferenceOptions& options;
@@ -99,7 +104,7 @@ int render(const ReferenceOptions& options, const CommonOptions& common) {
     }
     const std::atomic<bool>& stop = interruption_flag();
     require_writable_folder(options.view.output);
-    const Task task(options, common);
+    Task task(options, common);
 
     ProgressLine progress;
     ReferenceControl control;
@@ -113,10 +118,10 @@ int render(const ReferenceOptions& options, const CommonOptions& common) {
                       fmt::format("{} of {} samples, {:.2f} M rays/s, relative error {:.3g}", done.samples_done,
                                   done.samples_wanted, done.rays_per_second * 1e-6, done.relative_error));
     };
-    const PathTracer tracer(task.scene, options.span);
+    std::optional<PathTracer> tracer(std::in_place, task.scene, options.span);
     if (options.is_shard) {
         const std::filesystem::path file = options.shard_file(task.view);
-        const bool complete = tracer.render_shard(task.view, task.settings, file, control);
+        const bool complete = tracer->render_shard(task.view, task.settings, file, control);
         progress.clear();
         if (!complete) {
             fmt::print("Interrupted after {} samples per pixel of the shard; ", samples_done);
@@ -131,7 +136,9 @@ int render(const ReferenceOptions& options, const CommonOptions& common) {
         return exit_fine;
     }
 
-    ReferenceResult result = tracer.render(task.view, task.settings, control);
+    ReferenceResult result = tracer->render(task.view, task.settings, control);
+    tracer.reset();
+    task.forget_scene();
     progress.clear();
     if (!result.complete) {
         fmt::print("Interrupted after {} samples per pixel; ", result.samples);
@@ -146,12 +153,13 @@ int render(const ReferenceOptions& options, const CommonOptions& common) {
 
 int merge(const ReferenceOptions& options, const CommonOptions& common) {
     require_writable_folder(options.view.output);
-    const Task task(options, common);
+    Task task(options, common);
     try {
         ReferenceResult result =
             PathTracer(task.scene, options.span).merge(task.view, task.settings, options.merge, options.threads);
         fmt::print("{}: {} samples per pixel of {} shards, {:.1f} s, {}\n", task.name(), result.samples,
                    options.merge.size(), result.seconds, million_rays_per_second(result.rays, result.seconds));
+        task.forget_scene();
         task.write(std::move(result));
     } catch (const ReferenceError& error) {
         throw ReferenceError(fmt::format(

@@ -16,6 +16,7 @@
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfStringAttribute.h>
+#include <OpenEXR/ImfThreading.h>
 #include <fmt/format.h>
 
 #include "frames/channel_names.h"
@@ -50,6 +51,17 @@ void add_plane(const std::filesystem::path& path, const std::string& name, const
         auto* base = reinterpret_cast<char*>(const_cast<float*>(image.values().data() + i));
         buffer.insert(names[i], Imf::Slice(Imf::FLOAT, base, pixel, pixel * image.width()));
     }
+}
+
+// OpenEXR keeps two blocks of 16 lines per thread, with all channels: of frames with very many as few as fit 128 MiB.
+int writing_threads(const Frame& frame) {
+    std::size_t channels = 0;
+    for (const std::string& name : frame.plane_names()) {
+        channels += static_cast<std::size_t>(frame.plane(name).channels());
+    }
+    const std::size_t per_thread = 2 * 16 * sizeof(float) * channels * static_cast<std::size_t>(frame.width());
+    const auto affordable = static_cast<int>(std::max<std::size_t>(1, (std::size_t{128} << 20) / per_thread));
+    return std::min(affordable, Imf::globalThreadCount());
 }
 
 // Files that OpenEXR would refuse in its own words, or for which it would ask for absurd amounts of memory.
@@ -231,7 +243,7 @@ void write_exr(const std::filesystem::path& path, const Frame& frame) {
     for (const auto& name : planes) add_plane(path, name, frame.plane(name), header, buffer);
 
     write_exr_atomically(path, [&](Imf::OStream& stream) {
-        Imf::OutputFile output(stream, header);
+        Imf::OutputFile output(stream, header, writing_threads(frame));
         output.setFrameBuffer(buffer);
         output.writePixels(frame.height());
     });

@@ -1,9 +1,11 @@
 // A float image of any number of channels: the one container for everything that a renderer hands over.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <span>
-#include <vector>
+
+#include "frames/zeroed_array.h"
 
 namespace plumb {
 
@@ -15,7 +17,9 @@ public:
         : width_(width),
           height_(height),
           channels_(channels),
-          values_(static_cast<std::size_t>(width) * height * channels, value) {}
+          values_(static_cast<std::size_t>(width) * height * channels) {
+        if (value != 0.0f) std::ranges::fill(values(), value);
+    }
 
     int width() const { return width_; }
     int height() const { return height_; }
@@ -29,8 +33,8 @@ public:
     std::span<const float> pixel(int x, int y) const {
         return {&values_[index(x, y)], static_cast<std::size_t>(channels_)};
     }
-    std::span<float> values() { return values_; }
-    std::span<const float> values() const { return values_; }
+    std::span<float> values() { return values_.values(); }
+    std::span<const float> values() const { return values_.values(); }
 
     bool same_shape(const Image& other) const {
         return width_ == other.width_ && height_ == other.height_ && channels_ == other.channels_;
@@ -40,7 +44,7 @@ private:
     std::size_t index(int x, int y) const { return (static_cast<std::size_t>(y) * width_ + x) * channels_; }
 
     int width_ = 0, height_ = 0, channels_ = 0;
-    std::vector<float> values_;
+    ZeroedArray<float> values_;
 };
 
 }  // namespace plumb

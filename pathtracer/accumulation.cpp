@@ -35,7 +35,7 @@ Accumulation::Accumulation(int width, int height, const EstimationPlan& plan, bo
     irradiance_ = reserve(plan.irradiance, 3);
     reflection_ = reserve(plan.reflection, 3);
     channels_ = static_cast<std::size_t>(next);
-    sums_.resize(channels_ * 2 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+    sums_ = ZeroedArray<double>(channels_ * 2 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
     // 2^-32 of the light level: a sample of a thousandth of it is off by 1e-7 of itself, one as likely up as down. The
     // ambient visibility, at most 1, has a quantum of its own, however dim the scene.
     quantum_ = std::exp2(std::ceil(std::log2(light_level > 0.0 ? light_level : 1.0)) - 32.0);
@@ -72,10 +72,6 @@ void Accumulation::add_background(std::size_t pixel, int half, const glm::vec3& 
     double* sum = sums(pixel, half);
     if (ao_ >= 0) sum[ao_] += 1.0;
     if (emission_ >= 0) add_colour(sum + emission_, emission);
-}
-
-void Accumulation::add(std::span<const double> other) {
-    for (std::size_t i = 0; i < sums_.size(); ++i) sums_[i] += other[i];
 }
 
 bool Accumulation::is_exact() const {
@@ -139,26 +135,44 @@ Accumulation::Value Accumulation::value(const StochasticPlane& plane, std::size_
     return {};
 }
 
-void Accumulation::write(const StochasticPlane& plane, int samples, const ExactParts& exact, Frame& frame) const {
-    const int channels = plane.channels();
-    Image& mean = frame.set(plane.name, Image(width_, height_, channels));
-    Image& half_a = frame.set("half_a." + plane.name, Image(width_, height_, channels));
-    Image& half_b = frame.set("half_b." + plane.name, Image(width_, height_, channels));
-    Image& variance = frame.set("variance." + plane.name, Image(width_, height_, channels));
-    parallel_for(height_, [&](int y) {
-        for (int x = 0; x < width_; ++x) {
-            const std::size_t pixel =
-                static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
-            const Value at = value(plane, pixel, samples, exact);
-            for (int c = 0; c < channels; ++c) {
-                const float difference = at.half_a[c] - at.half_b[c];
-                half_a.at(x, y, c) = at.half_a[c];
-                half_b.at(x, y, c) = at.half_b[c];
-                mean.at(x, y, c) = at.mean[c];
-                variance.at(x, y, c) = 0.25f * difference * difference;
-            }
+void Accumulation::write(const std::vector<StochasticPlane>& planes, int samples, const ExactParts& exact,
+                         Frame& frame) {
+    struct Target {
+        const StochasticPlane& plane;
+        Image &mean, &half_a, &half_b, &variance;
+    };
+    std::vector<Target> targets;
+    for (const StochasticPlane& plane : planes) {
+        const auto image = [&](const char* prefix) -> Image& {
+            return frame.set(prefix + plane.name, Image(width_, height_, plane.channels()));
+        };
+        targets.push_back({plane, image(""), image("half_a."), image("half_b."), image("variance.")});
+    }
+    const auto write_pixel = [&](const Target& target, int x, int y) {
+        const Value at = value(
+            target.plane, static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x),
+            samples, exact);
+        for (int c = 0; c < target.plane.channels(); ++c) {
+            const float difference = at.half_a[c] - at.half_b[c];
+            target.half_a.at(x, y, c) = at.half_a[c];
+            target.half_b.at(x, y, c) = at.half_b[c];
+            target.mean.at(x, y, c) = at.mean[c];
+            target.variance.at(x, y, c) = 0.25f * difference * difference;
         }
-    });
+    };
+    // Planes take as much memory as the sums: band by band, so that there are never both.
+    constexpr int band = 32;
+    const std::size_t row_of_sums = channels_ * 2 * static_cast<std::size_t>(width_);
+    for (int top = 0; top < height_; top += band) {
+        const int end = std::min(height_, top + band);
+        parallel_for(end - top, [&](int row) {
+            for (const Target& target : targets) {
+                for (int x = 0; x < width_; ++x) write_pixel(target, x, top + row);
+            }
+        });
+        sums_.give_back(row_of_sums * static_cast<std::size_t>(top), row_of_sums * static_cast<std::size_t>(end));
+    }
+    sums_ = {};
 }
 
 double Accumulation::relative_error(const StochasticPlane& plane, int samples, const ExactParts& exact) const {

@@ -13,6 +13,7 @@
 #include <glm/glm.hpp>
 
 #include "frames/frame.h"
+#include "frames/zeroed_array.h"
 #include "pathtracer/path_integrator.h"
 
 namespace plumb {
@@ -57,23 +58,19 @@ public:
     void add(const SampleBatch& samples, const VertexBatch& starts, const BatchEstimate& estimate);
     // Adds a sample that met nothing: open sky.
     void add_background(std::size_t pixel, int half, const glm::vec3& emission);
-    // Adds sums of the same plan, such as another shard's.
-    void add(std::span<const double> sums);
 
-    // Adds `plane` with half_a., half_b. and variance. to `frame`. `samples` is the number per pixel, even. The mean of
-    // `indirect` is the sum of the means of indirect.1, .2 and so on, that of `total` is emission + direct + indirect +
-    // reflection, added in this order in float; of all others it is that of the halves.
-    void write(const StochasticPlane& plane, int samples, const ExactParts& exact, Frame& frame) const;
+    // Adds each plane with its half_a., half_b. and variance. to `frame`, and gives the sums' memory back as it goes:
+    // nothing may be asked afterwards. `samples` is the number per pixel, even. The mean of `indirect` is the sum of
+    // the means of indirect.1, .2 and so on, that of `total` is emission + direct + indirect + reflection, added in
+    // this order in float; of all others it is that of the halves.
+    void write(const std::vector<StochasticPlane>& planes, int samples, const ExactParts& exact, Frame& frame);
     // RMS standard error of the plane over its RMS; 0 for a black plane. The same bits whatever the number of threads.
     double relative_error(const StochasticPlane& plane, int samples, const ExactParts& exact) const;
     // False once a sum has grown so large that its last bits depend on the order of the samples.
     bool is_exact() const;
 
-    // Gives the memory back; nothing may be asked afterwards.
-    void release() { std::vector<double>().swap(sums_); }
-
-    std::span<double> values() { return sums_; }
-    std::span<const double> values() const { return sums_; }
+    std::span<double> values() { return sums_.values(); }
+    std::span<const double> values() const { return sums_.values(); }
 
 private:
     double* sums(std::size_t pixel, int half) {
@@ -103,7 +100,7 @@ private:
     std::size_t channels_ = 0;
     static constexpr double visibility_quantum = 0x1p-32;
     double quantum_, rounding_;  // a number so large that its last bit is worth a quantum
-    std::vector<double> sums_;
+    ZeroedArray<double> sums_;
 };
 
 }  // namespace plumb

@@ -226,17 +226,18 @@ ReferenceResult ReferenceRun::finish(bool complete) {
                            state_.rays,
                            complete,
                            accumulation_.is_exact()};
+    std::vector<StochasticPlane> sampled;
     for (const StochasticPlane& plane : plan_.stochastic) {
-        const bool sampled = plan_.primary_rays_are_sampled || plane.kind != StochasticPlane::Kind::emission;
-        if (sampled) {
-            accumulation_.write(plane, samples_done(), exact_, result.frame);
+        if (plan_.primary_rays_are_sampled || plane.kind != StochasticPlane::Kind::emission) {
+            sampled.push_back(plane);
         } else {
             write_gbuffer_plane(scene_, view_, nullptr, hits_, plane.name, result.frame);
         }
     }
-    accumulation_.release();  // before the G-buffer's planes take as much again
+    accumulation_.write(sampled, samples_done(), exact_, result.frame);
+    exact_ = {};
     const View* previous = settings_.previous_view ? &*settings_.previous_view : nullptr;
-    std::vector<SurfaceHit> hits = hits_;
+    std::vector<SurfaceHit> hits = std::move(hits_);
     for (int layer = 1; layer <= plan_.layers; ++layer) {
         if (layer > 1) hits = next_layer(scene_, view_, hits, settings_.minimum_separation);
         for (const std::string& plane : plan_.gbuffer) {

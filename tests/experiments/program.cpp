@@ -6,6 +6,7 @@
 #include <fstream>
 #include <stdexcept>
 
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -18,6 +19,8 @@ std::string quoted(const std::string& argument) {
     return result.append("'");
 }
 
+int exit_code_of(int status) { return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status); }
+
 // Whether a process has a handler for a signal, as Linux tells it in proc(5).
 bool catches(pid_t process, int signal) {
     std::ifstream status("/proc/" + std::to_string(process) + "/status");
@@ -27,6 +30,46 @@ bool catches(pid_t process, int signal) {
     }
     return false;
 }
+
+// The program on its way, with the end of a pipe that its output comes from.
+struct Child {
+    pid_t process = -1;
+    int output = -1;
+
+    explicit Child(const std::vector<std::string>& arguments) {
+        int pipe[2];
+        if (::pipe(pipe) != 0) throw std::runtime_error("cannot make a pipe");
+        std::vector<std::string> texts = {PLUMBLINE_PROGRAM};
+        texts.insert(texts.end(), arguments.begin(), arguments.end());
+        std::vector<char*> pointers;
+        pointers.reserve(texts.size() + 1);
+        for (std::string& text : texts) pointers.push_back(text.data());
+        pointers.push_back(nullptr);
+        process = ::fork();
+        if (process < 0) throw std::runtime_error("cannot start another process");
+        if (process == 0) {
+            ::dup2(pipe[1], STDOUT_FILENO);
+            ::dup2(pipe[1], STDERR_FILENO);
+            ::close(pipe[0]), ::close(pipe[1]);
+            ::execv(PLUMBLINE_PROGRAM, pointers.data());
+            ::_exit(127);
+        }
+        ::close(pipe[1]);
+        output = pipe[0];
+    }
+
+    std::string read() const {
+        std::string text;
+        std::array<char, 4096> buffer;
+        while (true) {
+            const ssize_t count = ::read(output, buffer.data(), buffer.size());
+            if (count <= 0) break;
+            text.append(buffer.data(), static_cast<std::size_t>(count));
+        }
+        ::close(output);
+        return text;
+    }
+};
 
 }  // namespace
 
@@ -38,7 +81,7 @@ ProgramRun run_shell(const std::string& command) {
     while (const std::size_t count = std::fread(buffer.data(), 1, buffer.size(), pipe))
         run.output.append(buffer.data(), count);
     const int status = ::pclose(pipe);
-    run.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    run.exit_code = exit_code_of(status);
     return run;
 }
 
@@ -51,43 +94,31 @@ std::string quoted_command(const std::vector<std::string>& arguments) {
 }
 
 ProgramRun signal_plumbline(const std::vector<std::string>& arguments, int signal) {
-    int pipe[2];
-    if (::pipe(pipe) != 0) throw std::runtime_error("cannot make a pipe");
-    std::vector<std::string> texts = {PLUMBLINE_PROGRAM};
-    texts.insert(texts.end(), arguments.begin(), arguments.end());
-    std::vector<char*> pointers;
-    pointers.reserve(texts.size() + 1);
-    for (std::string& text : texts) pointers.push_back(text.data());
-    pointers.push_back(nullptr);
-
-    const pid_t child = ::fork();
-    if (child < 0) throw std::runtime_error("cannot start another process");
-    if (child == 0) {
-        ::dup2(pipe[1], STDOUT_FILENO);
-        ::dup2(pipe[1], STDERR_FILENO);
-        ::close(pipe[0]), ::close(pipe[1]);
-        ::execv(PLUMBLINE_PROGRAM, pointers.data());
-        ::_exit(127);
-    }
-    ::close(pipe[1]);
+    const Child child(arguments);
     int status = 0;
     bool ended = false;
-    while (!ended && !catches(child, signal)) {
-        ended = ::waitpid(child, &status, WNOHANG) == child;
+    while (!ended && !catches(child.process, signal)) {
+        ended = ::waitpid(child.process, &status, WNOHANG) == child.process;
         ::usleep(2000);
     }
-    if (!ended) ::kill(child, signal);
+    if (!ended) ::kill(child.process, signal);
     ProgramRun run;
-    std::array<char, 4096> buffer;
-    while (true) {
-        const ssize_t count = ::read(pipe[0], buffer.data(), buffer.size());
-        if (count <= 0) break;
-        run.output.append(buffer.data(), static_cast<std::size_t>(count));
-    }
-    ::close(pipe[0]);
+    run.output = child.read();
     if (ended) throw std::runtime_error("plumbline ended before it caught a signal: " + run.output);
-    ::waitpid(child, &status, 0);
-    run.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    ::waitpid(child.process, &status, 0);
+    run.exit_code = exit_code_of(status);
+    return run;
+}
+
+ProgramRun measure_plumbline(const std::vector<std::string>& arguments) {
+    const Child child(arguments);
+    ProgramRun run;
+    run.output = child.read();
+    int status = 0;
+    rusage usage{};
+    ::wait4(child.process, &status, 0, &usage);
+    run.exit_code = exit_code_of(status);
+    run.peak_bytes = 1024 * usage.ru_maxrss;  // kilobytes on Linux
     return run;
 }
 

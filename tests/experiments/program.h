@@ -8,7 +8,8 @@ namespace plumb {
 
 struct ProgramRun {
     int exit_code = -1;
-    std::string output;  // standard output and standard error together
+    std::string output;   // standard output and standard error together
+    long peak_bytes = 0;  // the most memory at once, where it was measured
 };
 
 // Runs a shell command line.
@@ -19,6 +20,9 @@ ProgramRun run_plumbline(const std::vector<std::string>& arguments);
 // Starts plumbline, waits until it catches `signal`, sends it, and waits for the end. Throws std::runtime_error where
 // the program ends before.
 ProgramRun signal_plumbline(const std::vector<std::string>& arguments, int signal);
+
+// Runs plumbline and measures the memory that it takes.
+ProgramRun measure_plumbline(const std::vector<std::string>& arguments);
 
 // Arguments as a shell takes them.
 std::string quoted_command(const std::vector<std::string>& arguments);
