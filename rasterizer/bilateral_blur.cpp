@@ -5,11 +5,14 @@
 
 #include <fmt/format.h>
 
+#include "rasterizer/depth_key_pass.h"
 #include "rasterizer/gbuffer_planes.h"
 #include "rasterizer/gl_error.h"
 
 namespace plumb {
 namespace {
+
+constexpr GLuint blur_key_unit = 4;
 
 void require_sound(const BilateralBlurRequest& request) {
     const BilateralBlurSettings& settings = request.settings;
@@ -33,6 +36,13 @@ void require_sound(const BilateralBlurRequest& request) {
 
 // Of a kind that compares surfaces, not only depths.
 bool compares_surfaces(const BilateralBlurSettings& settings) { return settings.kind == BlurKind::bilateral; }
+
+// The plane of the keys that depths are compared by; empty: by the depths themselves.
+std::string key_plane(const BilateralBlurSettings& settings) {
+    const bool compared = compares_surfaces(settings) && settings.depth_sharpness > 0.0f;
+    const bool stored = settings.depth_key_bits == 8 || settings.depth_key_bits == 16;
+    return compared && stored ? depth_key_plane(settings.depth_key_bits) : "";
+}
 
 std::string gaussian_weights(const BilateralBlurSettings& settings) {
     std::string weights;
@@ -61,8 +71,7 @@ ShaderDefines defines_along(const char* direction, const BilateralBlurRequest& r
     defines.emplace_back("DEPTH_SHARPNESS", shader_literal(settings.depth_sharpness / request.quantity_radius));
     defines.emplace_back("NORMAL_SHARPNESS", shader_literal(settings.normal_sharpness));
     defines.emplace_back("PLANE_SHARPNESS", shader_literal(settings.plane_sharpness));
-    if (settings.depth_key_bits < 32)
-        defines.emplace_back("DEPTH_KEYS", fmt::format("{}.0", (1 << settings.depth_key_bits) - 1));
+    defines.emplace_back("STORED_KEYS", key_plane(settings).empty() ? "0" : "1");
     return defines;
 }
 
@@ -101,6 +110,8 @@ BilateralBlurPass::BilateralBlurPass(const PassResources& resources, const Bilat
     if (!compares_surfaces(request.settings)) return;
     normal_ = &resources.planes.get("normal");
     position_ = stored_positions(resources);
+    const std::string keys = key_plane(request.settings);
+    if (!keys.empty()) keys_ = &resources.planes.get(keys);
 }
 
 void BilateralBlurPass::execute(const PassFrame&) {
@@ -108,6 +119,7 @@ void BilateralBlurPass::execute(const PassFrame&) {
     depth_.bind(1);
     if (normal_) normal_->bind(2);
     if (position_) position_->bind(stored_position_unit);
+    if (keys_) keys_->bind(blur_key_unit);
     {
         const InnerArea::Restriction restriction(area_of_rows_);
         along_rows_.program().set("noisy_layer", layer_);
@@ -130,6 +142,8 @@ PassDeclaration declare_bilateral_blur(const BilateralBlurRequest& request) {
     if (compares_surfaces(request.settings)) {
         pass.inputs.push_back(prefix + "normal");
         if (request.stored_positions) pass.inputs.push_back(prefix + "camera_position");
+        const std::string keys = key_plane(request.settings);
+        if (!keys.empty()) pass.inputs.push_back(prefix + keys);
     }
     return pass;
 }

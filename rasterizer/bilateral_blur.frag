@@ -2,8 +2,7 @@
 //
 // Defines: LAYER (whose surfaces), DIRECTION (ivec2), BLUR_RADIUS, STEP, GAUSSIAN_WEIGHTS (of distance 0 to BLUR_RADIUS),
 // KIND with the names of its values, and of the bilateral kind: MONOTONIC (0, 1), DEPTH_SHARPNESS (per metre),
-// NORMAL_SHARPNESS, PLANE_SHARPNESS, DEPTH_KEYS (how many values a key has besides 0; none: depths are compared as they
-// are).
+// NORMAL_SHARPNESS, PLANE_SHARPNESS, STORED_KEYS (0: depths are compared as they are).
 
 #include "depth_mip_chain.glsl"
 #include "normal_encoding.glsl"
@@ -11,6 +10,9 @@
 layout(binding = 0) uniform sampler2DArray noisy;
 layout(binding = 1) uniform sampler2DArray depth;
 layout(binding = 2) uniform sampler2DArray normal;
+#if STORED_KEYS
+layout(binding = 4) uniform sampler2DArray depth_keys;  // fractions of the far plane
+#endif
 uniform int noisy_layer;
 
 layout(location = 0) out vec4 smoothed;
@@ -19,31 +21,28 @@ const float gaussian[BLUR_RADIUS + 1] = float[](GAUSSIAN_WEIGHTS);
 
 #if KIND == BILATERAL
 struct Surface {
-    float depth;
+    float depth, key;    // metres
     vec3 point, normal;  // camera space, world space
 };
 
 Surface surface_at(ivec2 pixel) {
     Surface surface;
     surface.depth = texelFetch(depth, ivec3(pixel, LAYER), 0).r;
+#if STORED_KEYS
+    surface.key = texelFetch(depth_keys, ivec3(pixel, LAYER), 0).r * far_plane;
+#else
+    surface.key = surface.depth;
+#endif
     surface.point = surface_point(pixel, LAYER, surface.depth);
     surface.normal = normal_of_texel(texelFetch(normal, ivec3(pixel, LAYER), 0));
     return surface;
-}
-
-float depth_key(float depth) {
-#ifdef DEPTH_KEYS
-    return floor(min(depth / far_plane, 1.0) * DEPTH_KEYS + 0.5) * (far_plane / DEPTH_KEYS);
-#else
-    return depth;
-#endif
 }
 
 float edge_weight(Surface centre, Surface tap) {
     vec3 offset = tap.point - centre.point;
     vec3 direction = world_space_direction(offset * inversesqrt(max(dot(offset, offset), 1e-30)));
     float off_plane = max(abs(dot(direction, centre.normal)), abs(dot(direction, tap.normal)));
-    float depth_weight = max(0.0, 1.0 - DEPTH_SHARPNESS * abs(depth_key(tap.depth) - depth_key(centre.depth)));
+    float depth_weight = max(0.0, 1.0 - DEPTH_SHARPNESS * abs(tap.key - centre.key));
     float normal_weight = max(0.0, 1.0 - NORMAL_SHARPNESS * (1.0 - dot(centre.normal, tap.normal)));
     float plane_weight = max(0.0, 1.0 - 2.0 * PLANE_SHARPNESS * off_plane);
     return is_background(tap.depth) ? 0.0 : depth_weight * normal_weight * plane_weight * plane_weight;

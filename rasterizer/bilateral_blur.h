@@ -8,9 +8,8 @@
 //     w_normal  = max(0, 1 - normal_sharpness (1 - n.n'))
 //     w_plane   = max(0, 1 - 2 plane_sharpness max(|u.n|, |u.n'|))     u: unit vector between the two points
 //
-// With depth_key_bits of 8 or 16, z and z' in w_depth are what a key of so many bits would hold of them, the fraction
-// of the far plane (8 bits show bands, as implementers report). Keys are made as they are compared, not stored: the
-// image is that of stored ones, the time is not.
+// With depth_key_bits of 8 or 16, z and z' in w_depth are what a stored key of so many bits holds of them, the fraction
+// of the far plane (depth_key_pass.h; 8 bits show bands, as implementers report).
 //
 // The kinds gaussian_2015 (as the thesis' text prints it) and gaussian_2015_listing (as its program has it) know depth
 // alone, and other widths:
@@ -34,8 +33,8 @@
 
 #include <string>
 
-#include "rasterizer/inner_area.h"
 #include "rasterizer/fullscreen.h"
+#include "rasterizer/inner_area.h"
 #include "rasterizer/pass.h"
 
 namespace plumb {
@@ -63,6 +62,7 @@ private:
     const GlTexture& depth_;
     const GlTexture* normal_ = nullptr;    // where the kind looks at normals
     const GlTexture* position_ = nullptr;  // and at positions, and they are stored
+    const GlTexture* keys_ = nullptr;      // where depths are compared by keys
     int layer_;
     const GlTexture& half_blurred_;  // all blurs of a pipeline share one for each format
     FullscreenDraw along_rows_, along_columns_;

@@ -132,6 +132,7 @@ GLenum texture_format(RadianceFormat format) {
 
 bool belongs_to_gbuffer(std::string_view texture) {
     return texture == "direct" || texture == gbuffer_depth_buffer || texture == gbuffer_history ||
+           texture.starts_with("depth_key") ||
            std::ranges::find(gbuffer_planes, texture, &GBufferPlane::name) != gbuffer_planes.end();
 }
 

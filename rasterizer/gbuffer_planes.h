@@ -66,8 +66,8 @@ GLenum emission_format(const Scene& scene);
 // The format of lit radiance.
 GLenum texture_format(RadianceFormat format);
 
-// True for the textures that make up the G-buffer: its planes, the light of its layers, its depth buffer and what it
-// keeps for the next frame.
+// True for the textures that make up the G-buffer: its planes, the light of its layers, its depth buffer, the keys that
+// filters compare its depths by (depth_key_pass.h) and what it keeps for the next frame.
 bool belongs_to_gbuffer(std::string_view texture);
 constexpr std::string_view gbuffer_depth_buffer = "gbuffer.depth_buffer";
 constexpr std::string_view gbuffer_history = "previous_depth";

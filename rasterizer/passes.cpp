@@ -6,6 +6,7 @@
 
 #include "rasterizer/ambient_obscurance.h"
 #include "rasterizer/composite_pass.h"
+#include "rasterizer/depth_key_pass.h"
 #include "rasterizer/depth_mip_chain.h"
 #include "rasterizer/direct_light_pass.h"
 #include "rasterizer/environment_maps_pass.h"
@@ -100,6 +101,7 @@ std::vector<PassDeclaration> declare_passes(const Scene& scene, const Method& me
     for (int layer = 1; layer < most_layers; ++layer) passes.push_back(declare_peeled_layer(method, layer));
     for (int layer = 0; layer < most_layers; ++layer) passes.push_back(declare_motion(scene, layer));
     add_all(declare_depth_mip_chain());
+    add_all(declare_depth_keys());
     add_all(declare_ambient_obscurance(method, quantities));
     passes.push_back(declare_ambient_obscurance_over_time(scene, method));
     passes.push_back(declare_shadows(lights, method));

@@ -8,6 +8,8 @@
 #include "blur_run.h"
 #include "gl_test.h"
 #include "rasterizer/gl_error.h"
+#include "rasterizer/pipeline.h"
+#include "scenes/builtin.h"
 
 namespace plumb {
 namespace {
@@ -41,6 +43,24 @@ TEST_P(BilateralBlurTest, AgreesWithItsCounterpart) {
                 ASSERT_NEAR(actual.values()[i], expected.values()[i], 5e-4) << "value " << i;
             }
         }
+    }
+}
+
+TEST_P(BilateralBlurTest, KeysOfFewBitsAreStoredBesideTheDepth) {
+    const Scene scene = make_cornell();
+    const auto bytes = [&](int bits, int layers) {
+        Method method;
+        method.ao.enabled = false;
+        method.direct.emitters = false;  // no shadow maps
+        method.radiosity.blur = {.depth_key_bits = bits};
+        method.radiosity.bounces = 2;
+        if (layers == 2) method.radiosity.second_layer = SecondLayerIndirect::gather;
+        const Pipeline pipeline(context(), scene, method, {.planes = {"irradiance"}}, 16, 16);
+        return static_cast<int>(pipeline.gbuffer_bytes_per_pixel());
+    };
+    for (const int layers : {1, 2}) {
+        EXPECT_EQ(bytes(8, layers) - bytes(32, layers), layers);
+        EXPECT_EQ(bytes(16, layers) - bytes(32, layers), 2 * layers);
     }
 }
 

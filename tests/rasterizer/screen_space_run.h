@@ -10,6 +10,7 @@
 
 #include "layer_upload.h"
 #include "rasterizer/ambient_obscurance.h"
+#include "rasterizer/depth_key_pass.h"
 #include "rasterizer/depth_mip_chain.h"
 #include "rasterizer/pass_plan.h"
 #include "rasterizer/radiosity.h"
@@ -44,6 +45,7 @@ public:
             for (PassDeclaration& pass : more) declarations.push_back(std::move(pass));
         };
         add(declare_depth_mip_chain());
+        add(declare_depth_keys());
         add(declare_ambient_obscurance(method_, quantities_));
         add(declare_radiosity(scene_, method_));
         add(std::move(further_passes));
