@@ -260,6 +260,7 @@ std::vector<MethodParameter> method_parameters(Method& m) {
                           {"radiosity.use_mip_chain", &m.radiosity.use_mip_chain},
                           {"radiosity.mip_offset", &m.radiosity.mip_offset, 0, 16},
                           {"radiosity.minimum_mip_level", &m.radiosity.minimum_mip_level, 0, 5},
+                          {"radiosity.mip_normals_and_radiance", &m.radiosity.mip_normals_and_radiance},
                           {"radiosity.bounces", &m.radiosity.bounces, 1, most_bounces},
                           {"radiosity.second_layer", choice(m.radiosity.second_layer, {"reuse", "gather", "none"})},
                           {"radiosity.carry", &m.radiosity.carry},

@@ -77,7 +77,7 @@ ShaderDefines shader_defines(const PassResources& resources) {
     }
     const ShaderDefines of_falloff = falloff_defines(resources.quantities.ao_falloff);
     defines.insert(defines.end(), of_falloff.begin(), of_falloff.end());
-    const int coarsest = coarsest_depth_mip(resources.planes.width(), resources.planes.height());
+    const int coarsest = coarsest_mip(resources.planes.width(), resources.planes.height());
     const ShaderDefines chosen = {{"ESTIMATOR", in_capitals(to_string(settings.estimator))},
                                   {"LAYERS", std::to_string(settings.layers)},
                                   {"FACE_NORMALS", settings.normals == ObscuranceNormals::face ? "1" : "0"},
@@ -150,7 +150,7 @@ std::vector<PassDeclaration> declare_ambient_obscurance(const Method& method, co
         .remark = fmt::format("{}, {} taps, {} layer{}", to_string(method.ao.estimator), method.ao.samples,
                               method.ao.layers, method.ao.layers == 1 ? "" : "s")};
     if (reads_normals(method)) pass.inputs.emplace_back("normal");
-    if (method.ao.layers > 1) pass.inputs.push_back(std::string(second_layer_prefix) + depth);
+    if (method.ao.layers > 1) pass.inputs.push_back(layer_prefix(1) + depth);
     for (int layer = 0; stores_positions(method) && layer < method.ao.layers; ++layer)
         pass.inputs.push_back(layer_prefix(layer) + "camera_position");
     std::vector<PassDeclaration> passes = {std::move(pass)};

@@ -6,34 +6,17 @@
 // reader of a texel knows the very pixel that it holds, with its position, normal and radiance.
 //   Source: McGuire, Mara, Luebke 2012, "Scalable Ambient Obscurance".
 //   Cost: some hundredths of an ambient obscurance pass with 16 taps, on a software rasteriser. What a far tap reads
-//   besides depth (normal, radiance) it reads from level 0.
+//   besides depth (normal, radiance) it reads from level 0, or from chains made in the same way
+//   (radiosity.mip_normals_and_radiance).
 #pragma once
 
-#include "rasterizer/fullscreen.h"
-#include "rasterizer/pass.h"
+#include "rasterizer/mip_chain_pass.h"
 
 namespace plumb {
 
 constexpr std::string_view depth_mip_chain_plane = "depth_mip_chain";
 
-// The level from which there is only one texel across the smaller side, at most 5.
-int coarsest_depth_mip(int width, int height);
-
-// Makes the chain of one layer (0 or 1) of the plane `depth`.
-class DepthMipChainPass final : public Pass {
-public:
-    DepthMipChainPass(const PassResources& resources, int layer);
-    void execute(const PassFrame& frame) override;
-
-private:
-    const GlTexture& depth_;
-    const GlTexture& chain_;
-    int layer_;
-    FullscreenDraw draw_;
-    std::vector<GlFramebuffer> coarser_levels_;  // 1, 2, ...
-};
-
-// One declaration for each layer. Output: the plane `depth_mip_chain`.
+// One declaration for each layer, 0 and 1. Output: the plane `depth_mip_chain`.
 std::vector<PassDeclaration> declare_depth_mip_chain();
 
 }  // namespace plumb

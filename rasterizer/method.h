@@ -164,9 +164,10 @@ struct RadiositySettings {
     bool test_tap_normal = true;  // taps must face the receiver
     RadiosityNormalisation normalisation = RadiosityNormalisation::hits;
     bool use_mip_chain = true;
-    int mip_offset = 4;         // a tap r' pixels away reads level floor(log2 r') - mip_offset
-    int minimum_mip_level = 0;  // 0..5; higher is faster and noisier
-    int bounces = 1;            // within a frame, 1..most_bounces
+    int mip_offset = 4;                     // a tap r' pixels away reads level floor(log2 r') - mip_offset
+    int minimum_mip_level = 0;              // 0..5; higher is faster and noisier
+    bool mip_normals_and_radiance = false;  // far taps read these from chains, too: the same light, other memory
+    int bounces = 1;                        // within a frame, 1..most_bounces
     SecondLayerIndirect second_layer = SecondLayerIndirect::reuse;  // for later bounces
     bool carry = false;              // one bounce a frame, on top of those of the frames before (radiosity_carry.h)
     float damping = 0.0f;            // the fraction of what is carried on that is taken away, 0..1

@@ -13,7 +13,6 @@
 
 namespace plumb {
 
-constexpr std::string_view second_layer_prefix = "layer2.";
 constexpr int most_layers = 4;
 
 // "" for layer 0, "layer2." for layer 1...

@@ -95,6 +95,7 @@ std::vector<PassDeclaration> declare_radiosity(const Scene& scene, const Method&
     std::vector<PassDeclaration> passes;
     if (settings.carry) passes.push_back(declare_radiosity_carry(scene, method));
     for (int bounce = 1; bounce <= settings.bounces; ++bounce) {
+        for (PassDeclaration& pass : declare_gathered_chains(settings, bounce)) passes.push_back(std::move(pass));
         // The second layer first: what only the next frame reads of it is made with what is read of the first one.
         for (int layer = receiving_layers(settings, bounce) - 1; layer >= 0; --layer)
             declare_gathering(passes, scene, method, bounce, layer);

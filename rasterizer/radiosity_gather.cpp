@@ -24,6 +24,15 @@ std::string depth_plane(const RadiositySettings& settings) {
     return settings.use_mip_chain ? std::string(depth_mip_chain_plane) : "depth";
 }
 
+bool reads_chains(const RadiositySettings& settings) {
+    return settings.use_mip_chain && settings.mip_normals_and_radiance;
+}
+
+// What taps read of a plane: the plane itself, or its MIP chain.
+std::string tap_plane(const RadiositySettings& settings, const std::string& plane) {
+    return reads_chains(settings) ? mip_chain_of(plane) : plane;
+}
+
 bool emission_is_sent(const RadiositySettings& settings, int bounce) { return settings.emitters_shine && bounce == 1; }
 
 void require_sound_gather(const RadiositySettings& settings) {
@@ -61,8 +70,7 @@ void require_sound_gather(const RadiositySettings& settings) {
 ShaderDefines shader_defines(const PassResources& resources, int bounce, int layer) {
     const RadiositySettings& settings = resources.method.radiosity;
     require_sound_gather(settings);
-    const int coarsest =
-        settings.use_mip_chain ? coarsest_depth_mip(resources.planes.width(), resources.planes.height()) : 0;
+    const int coarsest = settings.use_mip_chain ? coarsest_mip(resources.planes.width(), resources.planes.height()) : 0;
     ShaderDefines defines = SampleSpiral::defines(settings.samples, taps_vary(settings.temporal));
     const bool nielsen = settings.estimator == RadiosityEstimator::nielsen2015;
     const ShaderDefines chosen = {
@@ -79,6 +87,7 @@ ShaderDefines shader_defines(const PassResources& resources, int bounce, int lay
         {"EMITTERS_SHINE", emission_is_sent(settings, bounce) ? "1" : "0"},
         {"TEST_TAP_NORMAL", settings.test_tap_normal ? "1" : "0"},
         {"FAR_TAPS_HIT", settings.test_tap_normal && !nielsen ? "1" : "0"},
+        {"MIP_NORMALS_AND_RADIANCE", reads_chains(settings) ? "1" : "0"},
         {"RADIUS", shader_literal(std::min(settings.radius, farthest))},
         {"SPREAD_PIXELS", std::to_string(settings.spread_pixels)},
         {"MIP_OFFSET", std::to_string(settings.mip_offset)},
@@ -119,13 +128,17 @@ RadiosityGatherPass::RadiosityGatherPass(const PassResources& resources, int bou
     : depth_(resources.planes.get(depth_plane(resources.method.radiosity))),
       normal_(resources.planes.get("normal")),
       position_(stored_positions(resources)),
-      sent_(resources.planes.get(sent_plane(resources.method.radiosity, bounce))),
+      sent_(
+          resources.planes.get(tap_plane(resources.method.radiosity, sent_plane(resources.method.radiosity, bounce)))),
       spiral_(resources.context, resources.method.radiosity.samples),
       draw_(resources.context, resources.programs, "radiosity_gather.frag", shader_defines(resources, bounce, layer)),
       target_(make_gather_target(resources, bounce, layer)),
       area_(resources, glm::ivec2(blur_reach(resources.method.radiosity.blur)),
             plane_of_later_bounces(resources.method.radiosity, bounce)) {
-    if (emission_is_sent(resources.method.radiosity, bounce)) emission_ = &resources.planes.get("emission");
+    const RadiositySettings& settings = resources.method.radiosity;
+    if (emission_is_sent(settings, bounce)) emission_ = &resources.planes.get(tap_plane(settings, "emission"));
+    if (reads_chains(settings) && settings.test_tap_normal)
+        normal_chain_ = &resources.planes.get(mip_chain_of("normal"));
 }
 
 void RadiosityGatherPass::execute(const PassFrame&) {
@@ -134,9 +147,25 @@ void RadiosityGatherPass::execute(const PassFrame&) {
     if (position_) position_->bind(stored_position_unit);
     sent_.bind(2);
     if (emission_) emission_->bind(4);
+    if (normal_chain_) normal_chain_->bind(5);
     spiral_.bind();
     const InnerArea::Restriction restriction(area_);
     draw_.draw(target_);
+}
+
+std::vector<PassDeclaration> declare_gathered_chains(const RadiositySettings& settings, int bounce) {
+    std::vector<PassDeclaration> passes;
+    if (!reads_chains(settings)) return passes;
+    const auto add = [&](const std::string& plane) {
+        for (int layer = 0; layer < settings.layers; ++layer) {
+            passes.push_back(
+                declare_mip_chain(layer_prefix(layer) + plane + " MIP chain", plane, mip_chain_of(plane), layer));
+        }
+    };
+    if (bounce == 1) add("normal");
+    add(sent_plane(settings, bounce));
+    if (emission_is_sent(settings, bounce)) add("emission");
+    return passes;
 }
 
 PassDeclaration declare_radiosity_gather(const Method& method, int bounce, int layer) {
@@ -149,8 +178,9 @@ PassDeclaration declare_radiosity_gather(const Method& method, int bounce, int l
     pass.inputs = {layer_prefix(layer) + "depth"};
     add_inputs(depth_plane(settings), settings.layers);
     add_inputs("normal", settings.layers);
-    add_inputs(sent_plane(settings, bounce), sending_layers(settings, bounce));
-    if (emission_is_sent(settings, bounce)) add_inputs("emission", settings.layers);
+    if (reads_chains(settings) && settings.test_tap_normal) add_inputs(mip_chain_of("normal"), settings.layers);
+    add_inputs(tap_plane(settings, sent_plane(settings, bounce)), sending_layers(settings, bounce));
+    if (emission_is_sent(settings, bounce)) add_inputs(tap_plane(settings, "emission"), settings.layers);
     if (stores_positions(method)) add_inputs("camera_position", settings.layers);
     if (settings.carry && layer == 0) {  // the next frame reads all layers
         for (int other = 1; other < receiving_layers(settings, bounce); ++other)

@@ -2,7 +2,7 @@
 //
 // Defines: RECEIVER_LAYER, LAYERS (that taps look at), SENDING_LAYERS (of these: that send light), ESTIMATOR and
 // NORMALISATION with the names of their values, TAPS (in all), TEST_TAP_NORMAL, FAR_TAPS_HIT and EMITTERS_SHINE (0, 1),
-// RADIUS (metres), SPREAD_PIXELS (0: the radius as it projects), MIP_OFFSET, FINEST_LEVEL, COARSEST_LEVEL, and those of
+// MIP_NORMALS_AND_RADIANCE (0, 1), RADIUS (metres), SPREAD_PIXELS (0: the radius as it projects), MIP_OFFSET, FINEST_LEVEL, COARSEST_LEVEL, and those of
 // falloff.glsl and sample_spiral.glsl.
 
 #include "depth_mip_chain.glsl"
@@ -12,6 +12,12 @@
 
 layout(binding = 0) uniform sampler2DArray depth;  // with its MIP chain where COARSEST_LEVEL > 0
 layout(binding = 1) uniform sampler2DArray normal;
+#if MIP_NORMALS_AND_RADIANCE
+layout(binding = 5) uniform sampler2DArray normal_chain;
+#define tap_normals normal_chain
+#else
+#define tap_normals normal
+#endif
 layout(binding = 2) uniform sampler2DArray radiance;  // reflected and diffuse, of each layer
 #if EMITTERS_SHINE
 layout(binding = 4) uniform sampler2DArray emission;
@@ -25,10 +31,19 @@ struct Tap {
     int level;
 };
 
-vec3 sent_light(ivec2 pixel, int layer) {
-    vec3 light = layer < SENDING_LAYERS ? texelFetch(radiance, ivec3(pixel, layer), 0).rgb : vec3(0.0);
+// Of a plane of level 0, or of its chain.
+vec4 tap_texel(sampler2DArray plane, Tap tap, int layer) {
+#if MIP_NORMALS_AND_RADIANCE
+    return texelFetch(plane, ivec3(tap.texel, layer), tap.level);
+#else
+    return texelFetch(plane, ivec3(tap.source, layer), 0);
+#endif
+}
+
+vec3 sent_light(Tap tap, int layer) {
+    vec3 light = layer < SENDING_LAYERS ? tap_texel(radiance, tap, layer).rgb : vec3(0.0);
 #if EMITTERS_SHINE
-    light += texelFetch(emission, ivec3(pixel, layer), 0).rgb;
+    light += tap_texel(emission, tap, layer).rgb;
 #endif
     return light;
 }
@@ -44,13 +59,13 @@ vec4 received(Tap tap, int layer, vec3 centre, vec3 camera_normal) {
     // The shaded point itself has no direction; rounding would make one up.
     bool hit = !is_background(tap_depth) && cosine > 0.0 && square > 1e-12 * centre.z * centre.z;
 #if TEST_TAP_NORMAL
-    vec3 tap_normal = normal_of_texel(texelFetch(normal, ivec3(tap.source, layer), 0));
+    vec3 tap_normal = normal_of_texel(tap_texel(tap_normals, tap, layer));
     hit = hit && -dot(world_space_direction(direction), tap_normal) > 0.01;
 #endif
 #if !FAR_TAPS_HIT
     hit = hit && near;
 #endif
-    vec3 light = sent_light(tap.source, layer);
+    vec3 light = sent_light(tap, layer);
     return hit ? vec4(near ? cosine * falloff(square * (1.0 / (RADIUS * RADIUS))) * light : vec3(0.0), 1.0) : vec4(0.0);
 }
 

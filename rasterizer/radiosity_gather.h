@@ -25,18 +25,22 @@
 //   angle, so that more taps do not converge to the integral; M averages over the hits only, as if the rest of the
 //   hemisphere looked like them.
 //
-// Choices where the sources are silent: a tap outside the image (guard band included) or without a surface is no hit. A
-// far tap reads the MIP chain of the depth only; normal and radiance are those of the very pixel that the chain's texel
-// holds, at level 0: exact, at the price of scattered reads. Both estimators take the taps of sample_spiral.h: the
+// A far tap reads the MIP chain of the depth; its normal and radiance are those of the very pixel that the chain's
+// texel holds. They are read at level 0, scattered, or with mip_normals_and_radiance from chains that are subsampled
+// like the depth's, as implementers have it: the same texels, so the same light bit for bit, for a pass more and
+// memory, and reads that fit a cache.
+//
+// Choices where the sources are silent: a tap outside the image (guard band included) or without a surface is no hit.
+// Both estimators take the taps of sample_spiral.h: the
 // thesis offsets its spiral by half a turn's share instead of a hash, and spins it by random numbers.
 #pragma once
 
 #include "rasterizer/fullscreen.h"
+#include "rasterizer/inner_area.h"
 #include "rasterizer/pass.h"
 #include "rasterizer/sample_spiral.h"
 
 namespace plumb {
-#include "rasterizer/inner_area.h"
 
 // Writes one layer of the plane that gathered_plane() names.
 class RadiosityGatherPass final : public Pass {
@@ -51,12 +55,15 @@ private:
     const GlTexture* position_;  // where positions are stored
     const GlTexture& sent_;
     const GlTexture* emission_ = nullptr;
+    const GlTexture* normal_chain_ = nullptr;
     SampleSpiral spiral_;
     FullscreenDraw draw_;
     GlFramebuffer target_;
     InnerArea area_;
 };
 
+// What the gathering of a bounce reads besides planes that others make: their MIP chains, where the method wants them.
+std::vector<PassDeclaration> declare_gathered_chains(const RadiositySettings& settings, int bounce);
 PassDeclaration declare_radiosity_gather(const Method& method, int bounce, int layer);
 
 std::string_view to_string(RadiosityEstimator estimator);

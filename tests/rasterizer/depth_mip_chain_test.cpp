@@ -17,7 +17,7 @@ TEST_P(DepthMipChainTest, EveryTexelIsThePixelThatRotatedGridStepsLeadTo) {
                            {.planes = {"depth_mip_chain", "layer2.depth_mip_chain"}});
         for (int layer = 0; layer < 2; ++layer) {
             const Image depth = run.render("depth", 1, layer);
-            for (int level = 0; level <= coarsest_depth_mip(size.x, size.y); ++level) {
+            for (int level = 0; level <= coarsest_mip(size.x, size.y); ++level) {
                 const Image chain = run.render("depth_mip_chain", 1, layer, level);
                 ASSERT_EQ(chain.width(), size.x >> level);
                 for (int y = 0; y < chain.height(); ++y) {
@@ -41,10 +41,10 @@ TEST_P(DepthMipChainTest, TheSecondLayerIsMadeOnlyWhereItIsRead) {
 }
 
 TEST(DepthMipChain, ItsCoarsestLevelStillHasATexel) {
-    EXPECT_EQ(coarsest_depth_mip(1280, 720), 5);
-    EXPECT_EQ(coarsest_depth_mip(32, 720), 5);
-    EXPECT_EQ(coarsest_depth_mip(31, 720), 4);
-    EXPECT_EQ(coarsest_depth_mip(500, 1), 0);
+    EXPECT_EQ(coarsest_mip(1280, 720), 5);
+    EXPECT_EQ(coarsest_mip(32, 720), 5);
+    EXPECT_EQ(coarsest_mip(31, 720), 4);
+    EXPECT_EQ(coarsest_mip(500, 1), 0);
 }
 
 }  // namespace

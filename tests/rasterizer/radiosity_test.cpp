@@ -1,5 +1,7 @@
 #include "rasterizer/radiosity.h"
 
+#include <algorithm>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -37,6 +39,7 @@ const std::vector<Case> cases = {
     {"tap normals untested", {.test_tap_normal = false}},
     {"divided by the samples", {.normalisation = RadiosityNormalisation::samples}},
     {"coarse", {.mip_offset = 1, .minimum_mip_level = 2}},
+    {"normals and radiance from chains", {.mip_offset = 1, .mip_normals_and_radiance = true}},
     {"one tap", {.samples = 1}},
     {"small radius", {.samples = 99, .radius = 0.2f}},
 };
@@ -46,6 +49,28 @@ TEST_P(RadiosityTest, AgreesWithItsCounterpartOnNoise) {
     for (const Case& c : cases) {
         SCOPED_TRACE(c.name);
         EXPECT_LT(expect_agreement(context(), noise, c.settings), 0.05);
+    }
+}
+
+// A texel of a chain is one of level 0: where it is read changes no bit of the light, through every bounce.
+TEST_P(RadiosityTest, ChainsOfNormalsAndRadianceHoldWhatLevel0Does) {
+    const counterpart::Layers noise = counterpart::random_layers(slanted_view(97, 66), 4);
+    for (const bool test_tap_normal : {true, false}) {
+        RadiositySettings settings{.radius = 3.0f,
+                                   .test_tap_normal = test_tap_normal,
+                                   .mip_offset = 1,
+                                   .bounces = 2,
+                                   .second_layer = SecondLayerIndirect::gather};
+        ScreenSpaceRun plain(context(), noise, unblurred(settings), all_planes);
+        settings.mip_normals_and_radiance = true;
+        ScreenSpaceRun chained(context(), noise, unblurred(settings), all_planes);
+        for (const char* plane : {"irradiance", "confidence"}) {
+            const Image a = plain.render(plane, 3), b = chained.render(plane, 3);
+            EXPECT_TRUE(std::ranges::equal(a.values(), b.values())) << plane;
+        }
+        EXPECT_EQ(chained.planes().has("normal_mip_chain"), test_tap_normal);
+        EXPECT_EQ(chained.planes().get("direct_mip_chain").layers(), 2);
+        EXPECT_FALSE(plain.planes().has("direct_mip_chain"));
     }
 }
 
