@@ -84,6 +84,11 @@ void check(const View& view, const ReferenceSettings& settings) {
                         settings.oracle->layers, settings.oracle->minimum_separation));
     }
     const std::optional<View>& opening = settings.view_at_shutter_opening;
+    if (settings.oracle && opening) {
+        throw ReferenceError(
+            "an oracle knows the layers of one moment, but the shutter is open for longer; close the shutter, or leave "
+            "the oracle out");
+    }
     if (opening && (opening->width() != view.width() || opening->height() != view.height())) {
         throw ReferenceError(
             fmt::format("the view at the opening of the shutter has {} x {} pixels, that at its closing {} x "

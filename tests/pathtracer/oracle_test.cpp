@@ -1,8 +1,11 @@
 // The oracle: rays meet what the first layers of a view hold, and nothing else.
 #include <limits>
 
+#include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "pathtracer/reference_error.h"
 #include "scenes/builtin.h"
 #include "tests/pathtracer/effects_scenes.h"
 
@@ -114,6 +117,75 @@ TEST(Oracle, GrowsLayerByLayerTowardsTheTruth) {
             }
             EXPECT_GT(less, 0) << "step " << i << " changes nothing: the scene proves nothing";
         }
+    }
+}
+
+// Light along +X falls on nothing but two slanted slabs, one as the second and one as the third layer below lids that
+// hide them from above, and nothing shadows anything: what a bounce and a mirror make of a slab is there once
+// its layer is.
+struct HiddenSlabs {
+    Scene scene;
+    enum Slabs { none = 0, second_layer = 1, third_layer = 2, both = 3 };
+
+    explicit HiddenSlabs(Slabs slabs) {
+        const int grey = add_material(scene, glm::vec3(0.5f));
+        add_quads(scene, add_dielectric(scene, glm::vec3(0.5f), 0.0f, 0.4f), {floor_quad(3.0f)});
+        add_quads(scene, grey, {floor_quad(0.9f, 2.0f)});
+        add_quads(scene, grey, {{{-0.5f, 1.6f, 0.7f}, {0.5f, 1.6f, 0.7f}, {0.5f, 1.6f, 0}, {-0.5f, 1.6f, 0}}});
+        if ((slabs & second_layer) != 0) add_slab(grey, -0.6f, -0.1f);
+        if ((slabs & third_layer) != 0) add_slab(grey, 0.1f, 0.6f);
+        scene.directional_lights.push_back({"sun", {1, 0, 0}, glm::vec3(3.0f)});
+    }
+    // Its lit side looks down.
+    void add_slab(int material, float near, float far) {
+        add_quads(scene, material, {{{-0.2f, 1.1f, near}, {-0.2f, 1.1f, far}, {0.2f, 0.7f, far}, {0.2f, 0.7f, near}}});
+    }
+};
+
+TEST(Oracle, BouncesAndMirrorsKnowASlabFromItsLayerOn) {
+    // From above, finely: a slab is lost where it covers less than a pixel's centre, which of n x n pixels are
+    // 1 / (2 n), here 0.5 %. Seen from the side, below the lids.
+    const View layers_view = from_above(1024), view = view_of({-0.3f, 0.5f, 1.9f}, {0, 0, 1}, 0.7f, 24);
+    const std::vector<std::string> oracle_planes = {"indirect.1", "reflection"};
+    const auto rendered = [&](HiddenSlabs::Slabs slabs, const std::optional<OracleSettings>& oracle) {
+        const HiddenSlabs hidden(slabs);
+        return PathTracer(hidden.scene).render(view, settings_of(oracle, oracle_planes, 256)).frame;
+    };
+    const Frame truth = rendered(HiddenSlabs::both, {}), second_alone = rendered(HiddenSlabs::second_layer, {});
+    for (int layers = 1; layers <= 3; ++layers) {
+        const Frame* expected = layers == 1 ? nullptr : layers == 2 ? &second_alone : &truth;
+        const Frame frame = rendered(HiddenSlabs::both, OracleSettings{layers_view, layers, 0.1f});
+        for (const std::string& plane : oracle_planes) {
+            const std::string what = fmt::format("{} layers, {}", layers, plane);
+            const Image& image = frame.plane(plane);
+            if (!expected) {
+                for (const float value : image.values()) EXPECT_EQ(value, 0.0f) << what;
+                continue;
+            }
+            // The same rays meet the same slabs, but for their borders.
+            const Image& known = expected->plane(plane);
+            for (std::size_t i = 0; i < image.values().size(); ++i) {
+                EXPECT_LE(image.values()[i], known.values()[i] * 1.00001f) << what << ", value " << i;
+            }
+            EXPECT_GT(mean_of(image), 0.98 * mean_of(known)) << what;
+        }
+    }
+    for (const std::string& plane : oracle_planes) {
+        EXPECT_GT(mean_of(second_alone.plane(plane)), 1e-4) << plane;
+        EXPECT_GT(mean_of(truth.plane(plane)), 1.2 * mean_of(second_alone.plane(plane))) << plane;
+    }
+}
+
+// A G-buffer is that of one moment.
+TEST(Oracle, RefusesAnOpenShutter) {
+    const HiddenSlabs hidden(HiddenSlabs::none);
+    auto settings = settings_of(OracleSettings{from_above(), 1, 0.1f}, {"ao"}, 2);
+    settings.view_at_shutter_opening = from_above();
+    try {
+        PathTracer(hidden.scene).render(from_above(), settings);
+        FAIL() << "no error";
+    } catch (const ReferenceError& error) {
+        EXPECT_THAT(error.what(), testing::HasSubstr("shutter"));
     }
 }
 
