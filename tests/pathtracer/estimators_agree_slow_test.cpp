@@ -37,6 +37,11 @@ INSTANTIATE_TEST_SUITE_P(All, EstimatorsAgreeSlowly, testing::Range(0, static_ca
                              return test_name(comparisons()[static_cast<std::size_t>(test.param)]);
                          });
 
+// An image takes half of the light samples from the panel and the sun.
+TEST(Superposition, WithAnEnvironmentImageHoldsOnAverage) {
+    expect_superposition({"direct", "reflection"}, 0, 4096, Sky::image);
+}
+
 TEST(Superposition, OfAllKindsOfLightHoldsOnAverageAfterABounce) {
     expect_superposition({"indirect", "reflection"}, 1, 8192);
 }

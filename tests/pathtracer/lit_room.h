@@ -10,12 +10,15 @@
 
 namespace plumb {
 
+enum class Sky { none, constant, image };
+
 // Which lights are on; all are there always, so that the geometry is the same. `brightness` multiplies all of them.
 struct Lit {
-    bool point = false, spot = false, sun = false, panel = false, sky = false;
+    bool point = false, spot = false, sun = false, panel = false;
+    Sky sky = Sky::none;
     float brightness = 1.0f;
 };
-constexpr Lit everything{true, true, true, true, true};
+constexpr Lit everything{true, true, true, true, Sky::constant};
 
 // A coloured room with a gloss over its walls, open towards +Z.
 inline Scene lit_room(const Lit& lit, float sun_radius = 0.0f) {
@@ -38,22 +41,26 @@ inline Scene lit_room(const Lit& lit, float sun_radius = 0.0f) {
         scene.directional_lights.push_back(
             {"sun", glm::normalize(glm::vec3(0.2f, -0.4f, -1)), 1.5f * unit, sun_radius});
     }
-    if (lit.sky) scene.environment.radiance = glm::vec3(0.3f, 0.4f, 0.6f) * unit;
+    if (lit.sky == Sky::image) add_uneven_sky(scene);
+    if (lit.sky != Sky::none) scene.environment.radiance = glm::vec3(0.3f, 0.4f, 0.6f) * unit;
     return scene;
 }
 inline View room_view(int size = 8) { return view_of({0.2f, 0.1f, 3.5f}, {0, 0, 0}, 0.6f, size); }
 
 // Where lights are sampled, as everywhere with anti-aliasing, one is chosen for all, and the sum comes out on average.
 // The sun has a disc here.
-inline void expect_superposition(const std::vector<std::string>& planes, int bounces, int samples) {
+inline void expect_superposition(const std::vector<std::string>& planes, int bounces, int samples,
+                                 Sky sky = Sky::constant) {
     const View view = room_view(4);
-    const std::vector<Lit> alone = {{.point = true}, {.spot = true}, {.sun = true}, {.panel = true}, {.sky = true}};
+    Lit with_all = everything;
+    with_all.sky = sky;
+    const std::vector<Lit> alone = {{.point = true}, {.spot = true}, {.sun = true}, {.panel = true}, {.sky = sky}};
     std::map<std::string, Replicates> together, summed;
     auto settings = settings_for(planes, samples, bounces);
     settings.antialias = true;
     for (std::uint64_t seed = 0; seed < 12; ++seed) {
         settings.seed = 100 + seed;
-        const Scene scene = lit_room(everything, 0.1f);
+        const Scene scene = lit_room(with_all, 0.1f);
         const Frame all = PathTracer(scene).render(view, settings).frame;
         std::map<std::string, Image> sums;
         for (const std::string& plane : planes) {
