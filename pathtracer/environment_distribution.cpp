@@ -41,8 +41,6 @@ EnvironmentDistribution::EnvironmentDistribution(const Scene& scene) {
         row_weights[row] = columns_[row].sum();
     });
     rows_ = DiscreteDistribution(row_weights);
-    // Mean over the sphere: the integral of L sin(theta) over the unit square, times 2 pi^2 / (4 pi).
-    mean_luminance_ = static_cast<float>(rows_.sum() / (static_cast<double>(width_) * height_)) * glm::half_pi<float>();
 }
 
 EnvironmentSample EnvironmentDistribution::sample(glm::vec2 u) const {

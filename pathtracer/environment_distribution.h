@@ -25,7 +25,6 @@ public:
     explicit EnvironmentDistribution(const Scene& scene);
 
     bool empty() const { return rows_.empty(); }
-    float mean_luminance() const { return mean_luminance_; }  // over the sphere
     EnvironmentSample sample(glm::vec2 u) const;
     float density(const glm::vec3& direction) const;
 
@@ -36,7 +35,6 @@ private:
     int width_ = 0, height_ = 0;
     DiscreteDistribution rows_;
     std::vector<DiscreteDistribution> columns_;
-    float mean_luminance_ = 0.0f;
 };
 
 }  // namespace plumb

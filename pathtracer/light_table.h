@@ -2,7 +2,10 @@
 //
 // Lights with an extent (emissive surfaces, suns, environments) may also be found by rays, so their samples carry a
 // density per solid angle for multiple importance sampling. One of them is chosen by power; where there is an
-// environment image it and all the others get half of the samples each. Lights without extent (point, spot, parallel)
+// environment image it and all the others get half of the samples each. (By the power that it sends through the scene's
+// bounding sphere it would get nearly all of them, also where it is hidden: with that, at 256 samples, the error of
+// indirect light in a closed room rose from 3.8 to 15.5 % and beside a lamp in the open from 5.8 to 12.7 %; only where
+// the lamp gave next to nothing it fell, from 6.9 to 5.9 %.) Lights without extent (point, spot, parallel)
 // are told apart: their unshadowed contribution at a point is known, and one is chosen in proportion to it, so that a
 // lamp in a dark corner is not lost beside the sun.
 #pragma once
