@@ -81,6 +81,66 @@ TEST(Shutter, AMovingCameraSweepsOverWhatStandsStill) {
     }
 }
 
+// Where camera and square move alike nothing smears: each pixel sees it always or never. Where they move against each
+// other, the smear is that of both together.
+TEST(Shutter, ACameraMovesRelativeToWhatItSees) {
+    for (const double along : {1.0, -1.0}) {
+        Scene scene;
+        add_quads(scene, add_material(scene, glm::vec3(0.0f), glm::vec3(1.0f)),
+                  {{{-0.45f, -9, -2}, {0.25f, -9, -2}, {0.25f, 9, -2}, {-0.45f, 9, -2}}});
+        let_move(scene, 0.0, 1.0, {0.5f, 0, 0});
+        const View opening = forward_view();
+        const glm::vec3 eye(static_cast<float>(0.5 * along), 0, 0);
+        const View closing = view_of(eye, eye + glm::vec3(0, 0, -1), 2.0f * std::atan(0.5f));
+        const Frame frame =
+            PathTracer(scene, {0.0, 1.0}).render(closing, shutter_settings(opening, {"emission"}, samples)).frame;
+        int lit = 0, smeared = 0;
+        for (int y = 0; y < 16; ++y) {
+            for (int x = 0; x < 16; ++x) {
+                const double at = PixelRay(opening, x, y).on_plane({0, 0, 1}, -2.0).x;
+                const float value = frame.plane("emission").at(x, y);
+                const bool inside = at > -0.45 && at < 0.25;
+                if (along > 0.0) {
+                    EXPECT_EQ(value, inside ? 1.0f : 0.0f) << x;
+                } else {
+                    EXPECT_NEAR(value, share_of_time(at, -1.0, -0.45, 0.25), time_error) << x;
+                }
+                lit += inside ? 1 : 0, smeared += value > 0.0f && value < 1.0f ? 1 : 0;
+            }
+        }
+        EXPECT_GT(lit, 50);
+        EXPECT_EQ(smeared > 50, along < 0.0) << smeared;
+    }
+}
+
+// Primary rays go from their direction at the opening to that at the closing in a straight line: a strip's edge at x =
+// b z is passed where the mixed direction's x - b z, which is linear in time, is 0.
+TEST(Shutter, ATurningCameraSweepsOverWhatStandsStill) {
+    Scene scene;
+    add_quads(scene, add_material(scene, glm::vec3(0.0f), glm::vec3(1.0f)),
+              {{{-0.4f, -9, -2}, {0.3f, -9, -2}, {0.3f, 9, -2}, {-0.4f, 9, -2}}});
+    const auto turned = [](float angle) {
+        return view_of({0, 0, 0}, {std::sin(angle), 0, -std::cos(angle)}, 2.0f * std::atan(0.5f));
+    };
+    const View opening = turned(-0.15f), closing = turned(0.35f);
+    const Frame frame =
+        PathTracer(scene, {0.0, 1.0}).render(closing, shutter_settings(opening, {"emission"}, samples)).frame;
+    int partly = 0;
+    for (int y = 0; y < 16; ++y) {
+        for (int x = 0; x < 16; ++x) {
+            const glm::dvec3 from = PixelRay(opening, x, y).direction, to = PixelRay(closing, x, y).direction;
+            const auto passes = [&](double edge) {
+                const double slope = edge / -2.0, before = from.x - slope * from.z, after = to.x - slope * to.z;
+                return std::clamp(before / (before - after), 0.0, 1.0);  // rays turn towards +x
+            };
+            const double expected = passes(0.3) - passes(-0.4);
+            EXPECT_NEAR(frame.plane("emission").at(x, y), expected, time_error) << x << ", " << y;
+            partly += expected > 0.0 && expected < 1.0 ? 1 : 0;
+        }
+    }
+    EXPECT_GT(partly, 100);
+}
+
 // A half plane that turns by a right angle about the view's axis: what lies at an angle behind its edge is covered once
 // the edge has passed. Poses in between are those of nine moments, joined straight: the edge is off by 1e-4 rad.
 TEST(Shutter, ATurningEdgeSweepsAnglesEvenly) {
@@ -133,7 +193,7 @@ TEST_P(MovingEmitter, GivesTheTimeAverageOfLambertsFormula) {
     add_polygon(scene, add_material(scene, glm::vec3(0.0f), glm::vec3(2.0f)), panel);
     let_move(scene, 1.0, 2.0, {1.4f, -0.5f, 0});
     const View view = view_of({0.3f, 0.4f, 0.8f}, {0.1f, 0.0f, 0.1f}, 0.5f, 8);
-    ReferenceSettings settings = shutter_settings(view, {"direct"}, 8192);
+    ReferenceSettings settings = shutter_settings(view, {"direct"}, 12288);
     settings.emitter_sampling = GetParam();
     const Frame frame = PathTracer(scene, {1.0, 2.0}).render(view, settings).frame;
     expect_mean(frame, "direct", [&](int x, int y) {
