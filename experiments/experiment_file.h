@@ -102,8 +102,9 @@ struct MethodSelection {
 };
 
 // The key `methods`: names of methods, or tables. A table with `sweep = { "ao.samples" = [6, 20, 50] }` makes one
-// method per value, named "NAME, ao.samples = 6"...; NAME itself is then no method. Throws ConfigError.
-MethodSelection read_methods(ConfigReader& reader);
+// method per value, named "NAME, ao.samples = 6"...; NAME itself is then no method. Throws ConfigError, also for
+// parameters that have no effect on `planes`, which the experiment asks for.
+MethodSelection read_methods(ConfigReader& reader, const std::vector<std::string>& planes);
 
 // Throws ConfigError with file and line.
 Experiment parse_experiment(const ConfigValue& table, const std::filesystem::path& file);

@@ -32,7 +32,7 @@ GenerationExperiment parse_generation(const ConfigValue& table, const std::files
     }
     if (experiment.walks.empty()) reader.fail("", "'walks' is missing: write at least one [[walks]] table");
     allow_presentation(reader);
-    experiment.methods = read_methods(reader).methods;
+    experiment.methods = read_methods(reader, {"layer2.depth"}).methods;
     for (const Method& method : experiment.methods) {
         if (method.gbuffer.layers != 2 || method.gbuffer.source == SourceOfStage::truth ||
             method.gbuffer.separation_unit != SeparationUnit::metres) {

@@ -97,7 +97,8 @@ MethodList builtin_methods() {
     return methods;
 }
 
-Method parse_method(const ConfigValue& table, const std::string& source, const MethodList& known) {
+Method parse_method(const ConfigValue& table, const std::string& source, const MethodList& known,
+                    const std::vector<std::string>* planes) {
     ConfigReader reader(table, source, "method");
     Method method;
     const std::string base = reader.text("base", "");
@@ -117,7 +118,7 @@ Method parse_method(const ConfigValue& table, const std::string& source, const M
     collect_leaves(std::get<ConfigMembers>(table.value), "", leaves);
     for (const auto& [name, value] : leaves) store_leaf(method, name, *value, source);
     for (const auto& [name, value] : leaves) {
-        const std::string reason = reason_without_effect(method, name);
+        const std::string reason = reason_without_effect(method, name, planes);
         if (reason.empty()) continue;
         throw ConfigError(fmt::format("{}:{}: {}: has no effect in method '{}', because {}; remove it", source,
                                       value->line, name, method.name, reason));
@@ -145,7 +146,7 @@ Method load_method(const std::string& name_or_path) {
                                   name_or_path, name_hint(name_or_path, names)));
 }
 
-void set_method_parameter(Method& method, const std::string& assignment) {
+void set_method_parameter(Method& method, const std::string& assignment, const std::vector<std::string>* planes) {
     const auto equals = assignment.find('=');
     if (equals == std::string::npos) {
         throw ConfigError(fmt::format("'{}': write a parameter as name=value, such as ao.samples=16", assignment));
@@ -159,7 +160,7 @@ void set_method_parameter(Method& method, const std::string& assignment) {
     const std::string source = fmt::format("'{}'", assignment);
     const ConfigValue parsed = parse_config("value = " + value, source);
     store_leaf(method, name, std::get<ConfigMembers>(parsed.value).front().value, source);
-    const std::string reason = reason_without_effect(method, name);
+    const std::string reason = reason_without_effect(method, name, planes);
     if (!reason.empty()) throw ConfigError(fmt::format("{}: has no effect, because {}", source, reason));
 }
 

@@ -8,6 +8,7 @@
 
 #include "experiments/config.h"
 #include "experiments/method_parameters.h"
+#include "experiments/parameter_effects.h"
 
 namespace plumb {
 
@@ -19,13 +20,16 @@ const Method* find_method(const MethodList& methods, std::string_view name);
 MethodList builtin_methods();
 
 // A method table: `name`, optional `base` (a method of `known`), and parameters; what is not set comes from the base or
-// is the default. Throws ConfigError for unknown keys, values out of range, and keys that would have no effect.
-Method parse_method(const ConfigValue& table, const std::string& source, const MethodList& known);
+// is the default. Throws ConfigError for unknown keys, values out of range, and keys that would have no effect on
+// `planes` (parameter_effects.h).
+Method parse_method(const ConfigValue& table, const std::string& source, const MethodList& known,
+                    const std::vector<std::string>* planes = nullptr);
 // A built-in method's name, or the path of a TOML file.
 Method load_method(const std::string& name_or_path);
 
 // Sets one parameter from text as a command line gives it ("ao.samples=6"). Throws ConfigError.
-void set_method_parameter(Method& method, const std::string& assignment);
+void set_method_parameter(Method& method, const std::string& assignment,
+                          const std::vector<std::string>* planes = nullptr);
 // Sets those parameters of `table` that have an effect on `method`; the others are left (a scene's overrides apply to
 // methods of many kinds). Throws ConfigError for unknown names and values out of range.
 void override_method(Method& method, const ConfigValue& table, const std::string& source);

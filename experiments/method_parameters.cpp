@@ -1,8 +1,5 @@
 #include "experiments/method_parameters.h"
 
-#include <algorithm>
-#include <array>
-
 #include <fmt/format.h>
 
 #include "experiments/config.h"
@@ -59,132 +56,6 @@ void add_temporal(std::vector<MethodParameter>& parameters, const std::string& p
                                             {prefix + "layers", &filter.layers, 1, 2},
                                             {prefix + "vary_taps", &filter.vary_taps},
                                         });
-}
-
-// Why parameter `name` of a blur changes nothing; empty where it matters. `group` is its prefix.
-std::string blur_reason(const BilateralBlurSettings& blur, std::string_view group, std::string_view name) {
-    if (!name.starts_with(group)) return "";
-    name.remove_prefix(group.size());
-    if (name != "radius" && blur.radius == 0) return fmt::format("{}radius = 0", group);
-    if (blur.kind != BlurKind::bilateral && name != "kind" && name != "radius" && name != "step")
-        return fmt::format("{}kind is not \"bilateral\"", group);
-    if (name == "depth_key_bits" && blur.depth_sharpness == 0.0f) return fmt::format("{}depth_sharpness = 0", group);
-    return "";
-}
-
-// The same of what is kept from frame to frame.
-std::string temporal_reason(const Method& method, std::string_view name) {
-    if (name.starts_with("ao.temporal.") && name != "ao.temporal.alpha" && method.ao.temporal.alpha == 0.0f)
-        return "ao.temporal.alpha = 0";
-    if (name.starts_with("radiosity.temporal.") && name != "radiosity.temporal.alpha" &&
-        method.radiosity.temporal.alpha == 0.0f) {
-        return "radiosity.temporal.alpha = 0";
-    }
-    if (name.starts_with("antialias.") && name != "antialias.temporal" && !method.antialias.temporal)
-        return "antialias.temporal = false";
-    return "";
-}
-
-// Why parameter `name` of the shadow maps changes nothing; empty where it matters.
-std::string shadow_reason(const ShadowSettings& shadow, std::string_view name) {
-    const bool paraboloids = shadow.point_map == PointShadowMap::dual_paraboloid;
-    if (name == "direct.shadow.point_map" || name == "direct.shadow.cube_size" ||
-        name.starts_with("direct.shadow.paraboloid_")) {
-        if (!shadow.lamps) return "direct.shadow.lamps = false";
-    }
-    if (name == "direct.shadow.cube_size" && paraboloids) return "direct.shadow.point_map = \"dual_paraboloid\"";
-    if (name.starts_with("direct.shadow.paraboloid_") && !paraboloids) return "direct.shadow.point_map = \"cube\"";
-    return "";
-}
-
-// The same of the G-buffer.
-std::string gbuffer_reason(const Method& method, std::string_view name) {
-    constexpr std::array of_two_layers = {"gbuffer.minimum_separation", "gbuffer.separation_unit", "gbuffer.generation",
-                                          "gbuffer.layer_selection"};
-    constexpr std::array of_rendering = {"gbuffer.separation_unit", "gbuffer.generation",    "gbuffer.layer_selection",
-                                         "gbuffer.depth_mapping",   "gbuffer.normal_format", "gbuffer.position"};
-    const GBufferSettings& gbuffer = method.gbuffer;
-    // Reflections may take it for the thickness of surfaces.
-    const bool is_thickness = method.reflections.enabled && method.reflections.thickness == 0.0f &&
-                              (name == "gbuffer.minimum_separation" || name == "gbuffer.separation_unit");
-    if (gbuffer.layers == 1 && !is_thickness && std::ranges::find(of_two_layers, name) != of_two_layers.end())
-        return "gbuffer.layers = 1";
-    if (gbuffer.source == SourceOfStage::truth && std::ranges::find(of_rendering, name) != of_rendering.end())
-        return "gbuffer.source = \"truth\"";
-    if (name == "gbuffer.layer_selection" && gbuffer.generation == LayerGeneration::peel)
-        return "gbuffer.generation = \"peel\"";
-    if (name == "gbuffer.position" && !method.ao.enabled && !method.radiosity.enabled && !method.reflections.enabled)
-        return "ao.enabled = false, radiosity.enabled = false and reflections.enabled = false";
-    return "";
-}
-
-bool reads_ambient(const Method& method, AmbientSource source) {
-    return (method.radiosity.enabled && method.radiosity.fill == source) ||
-           (method.composite.kind == CompositeKind::demo && method.composite.fill == source);
-}
-
-// The same of the lights, the environment's cubes and the probe.
-std::string light_reason(const Method& method, std::string_view name) {
-    const DirectSettings& direct = method.direct;
-    const ReflectionSettings& reflections = method.reflections;
-    if (name.starts_with("direct.volume_") && direct.local_lights == LocalLights::fullscreen) {
-        return "direct.local_lights = \"fullscreen\"";
-    }
-    if (name == "direct.volume_faces" && direct.local_lights == LocalLights::volume_stencil) {
-        return "direct.local_lights = \"volume_stencil\", which draws both faces";
-    }
-    if (name.starts_with("direct.shadow.emitter_") && !direct.emitters) return "direct.emitters = false";
-    const bool cube = direct.source == SourceOfStage::method && direct.environment == EnvironmentIrradiance::cube;
-    const auto falls_back = [&](ReflectionFallback to) { return reflections.enabled && reflections.fallback == to; };
-    if (name == "environment.size" && !cube && !reads_ambient(method, AmbientSource::environment) &&
-        !falls_back(ReflectionFallback::environment)) {
-        return "no stage reads the environment's cubes (direct.environment, radiosity.fill, composite.fill or "
-               "reflections.fallback would)";
-    }
-    if (name == "environment.samples" && !falls_back(ReflectionFallback::environment) &&
-        !falls_back(ReflectionFallback::probe)) {
-        return "no stage reads glossy levels (reflections.fallback would)";
-    }
-    if (name == "environment.samples" && reflections.roughness == ReflectionRoughness::samples) {
-        return "reflections.roughness = \"samples\", which reads the sharpest level";
-    }
-    if (name.starts_with("probe.") && !reads_ambient(method, AmbientSource::probe) &&
-        !falls_back(ReflectionFallback::probe)) {
-        return "no stage reads the probe (radiosity.fill, composite.fill or reflections.fallback would)";
-    }
-    return "";
-}
-
-// The same of the reflections.
-std::string reflection_reason(const ReflectionSettings& reflections, std::string_view name) {
-    if (!name.starts_with("reflections.") || name == "reflections.enabled") return "";
-    if (!reflections.enabled) return "reflections.enabled = false";
-    if (name == "reflections.samples" && reflections.roughness != ReflectionRoughness::samples) {
-        return "reflections.roughness is not \"samples\"";
-    }
-    return "";
-}
-
-// The same of what radiosity does with the light that it gathers, and of the composite.
-std::string bounce_reason(const Method& method, std::string_view name) {
-    const RadiositySettings& radiosity = method.radiosity;
-    const bool of_carrying =
-        name == "radiosity.damping" || name == "radiosity.carry_from" || name == "radiosity.carry_to";
-    if (of_carrying && !radiosity.carry) return "radiosity.carry = false";
-    if (name == "radiosity.bounces" && radiosity.carry) return "radiosity.carry = true makes one bounce a frame";
-    if (name == "radiosity.second_layer") {
-        if (radiosity.layers == 1) return "radiosity.layers = 1";
-        if (radiosity.bounces == 1 && !radiosity.carry) return "radiosity.bounces = 1 and radiosity.carry = false";
-    }
-    if (name == "radiosity.ambient" && radiosity.fill != AmbientSource::ambient) {
-        return "radiosity.fill is not \"ambient\"";
-    }
-    const bool physical = method.composite.kind == CompositeKind::physical;
-    if ((name == "composite.fill" || name == "composite.ambient") && physical) return "composite.kind = \"physical\"";
-    if (name == "composite.ambient" && method.composite.fill != AmbientSource::ambient) {
-        return "composite.fill is not \"ambient\"";
-    }
-    return "";
 }
 
 }  // namespace
@@ -297,41 +168,6 @@ std::vector<std::string> method_parameter_names() {
     std::vector<std::string> names;
     for (const MethodParameter& parameter : method_parameters(method)) names.push_back(parameter.name);
     return names;
-}
-
-std::string reason_without_effect(const Method& method, std::string_view name) {
-    if (name.starts_with("ao.") && name != "ao.enabled" && !method.ao.enabled) return "ao.enabled = false";
-    if (name.starts_with("radiosity.") && name != "radiosity.enabled" && !method.radiosity.enabled) {
-        return "radiosity.enabled = false";
-    }
-    // Highlights of lamps have shadows, wherever `direct` comes from.
-    const bool lights_highlights = method.reflections.enabled && method.reflections.lamps &&
-                                   name.starts_with("direct.shadow.") && !name.starts_with("direct.shadow.emitter_");
-    if (name.starts_with("direct.") && name != "direct.source" && !lights_highlights &&
-        method.direct.source == SourceOfStage::truth) {
-        return "direct.source = \"truth\"";
-    }
-    if (std::string reason = shadow_reason(method.direct.shadow, name); !reason.empty()) return reason;
-    if (std::string reason = light_reason(method, name); !reason.empty()) return reason;
-    if (std::string reason = reflection_reason(method.reflections, name); !reason.empty()) return reason;
-    if (std::string reason = blur_reason(method.ao.blur, "ao.blur.", name); !reason.empty()) return reason;
-    if (std::string reason = blur_reason(method.radiosity.blur, "radiosity.blur.", name); !reason.empty())
-        return reason;
-    if (std::string reason = temporal_reason(method, name); !reason.empty()) return reason;
-    const AmbientObscuranceEstimator estimator = method.ao.estimator;
-    if (name == "ao.exponent" && estimator != AmbientObscuranceEstimator::alchemy2011 &&
-        estimator != AmbientObscuranceEstimator::nielsen2015) {
-        return "only ao.estimator = \"alchemy2011\" or \"nielsen2015\" has one";
-    }
-    if (name == "ao.epsilon" && estimator == AmbientObscuranceEstimator::sao2012_undivided) {
-        return "ao.estimator = \"sao2012_undivided\", which divides by nothing";
-    }
-    if (!method.ao.use_mip_chain && name == "ao.mip_offset") return "ao.use_mip_chain = false";
-    if (!method.radiosity.use_mip_chain && (name == "radiosity.mip_offset" || name == "radiosity.minimum_mip_level")) {
-        return "radiosity.use_mip_chain = false";
-    }
-    if (std::string reason = bounce_reason(method, name); !reason.empty()) return reason;
-    return gbuffer_reason(method, name);
 }
 
 std::string print_parameter(const MethodParameter& parameter) {

@@ -1,9 +1,8 @@
-// Every parameter of a method by its name ("ao.samples"), with its range, and whether it has an effect.
+// Every parameter of a method by its name ("ao.samples"), with its range.
 #pragma once
 
 #include <functional>
 #include <string>
-#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -27,9 +26,6 @@ struct MethodParameter {
 // The parameters of `method`, pointing into it: the one list that everything below goes through.
 std::vector<MethodParameter> method_parameters(Method& method);
 std::vector<std::string> method_parameter_names();
-
-// Why parameter `name` changes nothing in `method`; empty where it matters.
-std::string reason_without_effect(const Method& method, std::string_view name);
 
 // The value as TOML has it.
 std::string print_parameter(const MethodParameter& parameter);

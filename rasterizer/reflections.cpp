@@ -37,13 +37,12 @@ bool has_lamps(const LightSet& lights, const Method& method) {
 bool is_limited(const Quantities& quantities) { return std::isfinite(quantities.reflection_radius); }
 
 // The plane that answers where rays find nothing; empty: none.
-std::string fallback_plane(const Scene& scene, const Method& method, const Quantities& quantities) {
-    if (is_limited(quantities)) return "";
+std::string fallback_plane(const Method& method) {
     switch (method.reflections.fallback) {
         case ReflectionFallback::none:
             return "";
         case ReflectionFallback::environment:
-            return scene.environment.is_black() ? "" : "environment.prefiltered";
+            return "environment.prefiltered";
         case ReflectionFallback::probe:
             return "probe.prefiltered";
     }
@@ -80,6 +79,10 @@ void require_sound(const ReflectionSettings& settings, const Quantities& quantit
     require(quantities.reflection_radius > 0.0f,
             fmt::format("the quantity's reflection_radius is {}; it must be more than zero metres",
                         quantities.reflection_radius));
+    require(settings.fallback == ReflectionFallback::none || !is_limited(quantities),
+            fmt::format("reflections.fallback is \"{}\", and the quantity's reflection_radius {} metres, beyond which "
+                        "nothing counts; set the one to \"none\" or the other to infinity",
+                        to_string(settings.fallback), quantities.reflection_radius));
 }
 
 ShaderDefines shader_defines(const PassResources& resources, bool lamps, bool fallback) {
@@ -171,11 +174,10 @@ ReflectionPass::ReflectionPass(const PassResources& resources)
       sources_(resources.planes, SurfaceRadiance(resources.scene, resources.method, resources.quantities)),
       specular_albedo_(specular_albedo_table(resources.context, resources.planes)),
       draw_(resources.context, resources.programs, "reflections.frag",
-            shader_defines(resources, lamps_ != nullptr,
-                           !fallback_plane(resources.scene, resources.method, resources.quantities).empty())),
+            shader_defines(resources, lamps_ != nullptr, !fallback_plane(resources.method).empty())),
       target_(make_reflection_target(resources)),
       area_(resources, {0, 0}) {
-    const std::string fallback = fallback_plane(resources.scene, resources.method, resources.quantities);
+    const std::string fallback = fallback_plane(resources.method);
     if (!fallback.empty()) fallback_ = &resources.planes.get(fallback);
     const SurfaceRadiance surfaces(resources.scene, resources.method, resources.quantities);
     finds_light_ = chain_ || fallback_ || surfaces.direct || surfaces.emission || surfaces.indirect;
@@ -239,7 +241,7 @@ std::vector<PassDeclaration> declare_reflections(const Scene& scene, const Light
         pass.inputs.push_back(layer_prefix(layer) + "camera_position");
     if (settings.roughness == ReflectionRoughness::mip) pass.inputs.emplace_back(radiance_chain_plane);
     if (has_lamps(lights, method)) pass.inputs.emplace_back(lamp_highlights_plane);
-    const std::string fallback = fallback_plane(scene, method, quantities);
+    const std::string fallback = fallback_plane(method);
     if (!fallback.empty()) pass.inputs.push_back(fallback);
     pass.remark =
         fmt::format("{}, {} layer{}, steps of {} pixels, fallback: {}",

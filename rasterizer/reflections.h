@@ -30,18 +30,18 @@
 // Y's own specular lobe is missing: mirrors show mirrors black, but for what is diffuse in them. Within border_fade
 // pixels of the image's border (guard band included) hits fade into the fallback, as they do where nothing is hit:
 //     none         black
-//     environment  the scene's environment, prefiltered by roughness (radiance_maps.h); black where there is none
+//     environment  the scene's environment, prefiltered by roughness (radiance_maps.h)
 //     probe        a probe's view, also prefiltered; without parallax
 // The highlights of lamps and suns come in as their own plane (lamp_highlights_pass.h).
-// Quantities::reflection_radius and its falloff apply as they do to the truth: what is farther away does not count, and
-// with a finite radius neither does a fallback.
+// Quantities::reflection_radius and its falloff apply as they do to the truth: what is farther away does not count. With
+// a finite radius a fallback would not count either: that is an error.
 //   Good for: what the view shows, reflected at grazing angles. Bad for: what only a mirror shows: the backs of things,
 //   what is outside the view or hidden behind more than the layers hold; thin things thinner than a step; the path
 //   tracer's `reflection` also holds what passes straight through transparent sheets, which this does not.
 #pragma once
 
-#include "rasterizer/bilateral_blur.h"
 #include "rasterizer/fullscreen.h"
+#include "rasterizer/inner_area.h"
 #include "rasterizer/light_set.h"
 #include "rasterizer/pass.h"
 #include "rasterizer/radiance_mip_chain.h"

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "experiments/method_parameters.h"
+#include "experiments/parameter_effects.h"
 
 namespace plumb {
 namespace {
@@ -54,6 +55,7 @@ TEST(ReflectionParameters, TheSeparationMattersWhereItIsTheThicknessOfSurfaces) 
 TEST(ReflectionParameters, ShadowsOfHighlightsMatterWhereverDirectLightComesFrom) {
     Method method;
     method.direct.source = SourceOfStage::truth;
+    method.gbuffer.layers = 1;  // else the method lights the second one itself
     EXPECT_THAT(reason_without_effect(method, "direct.shadow.cube_size"), HasSubstr("direct.source"));
     method.reflections.enabled = true;
     EXPECT_THAT(reason_without_effect(method, "direct.shadow.cube_size"), IsEmpty());

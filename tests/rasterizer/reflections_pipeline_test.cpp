@@ -152,6 +152,17 @@ TEST_P(ReflectionsPipelineTest, WhatCannotBeCombinedIsAnErrorThatSaysSo) {
     method = reflecting_method();
     method.gbuffer.source = SourceOfStage::truth;
     expect_error(method, "gbuffer.source is \"truth\"");
+    method = reflecting_method();
+    method.reflections.fallback = ReflectionFallback::environment;
+    expect_error(method, "the scene has no environment");
+    method.reflections.fallback = ReflectionFallback::probe;
+    try {
+        const Quantities near{.planes = {"reflection"}, .reflection_radius = 2.0f};
+        Pipeline(context(), scene, method, near, 16, 12);
+        ADD_FAILURE() << "a fallback beyond the radius within which reflections count";
+    } catch (const MethodError& error) {
+        EXPECT_THAT(error.what(), testing::HasSubstr("reflections.fallback is \"probe\""));
+    }
 }
 
 }  // namespace

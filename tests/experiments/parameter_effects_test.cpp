@@ -1,0 +1,123 @@
+// A parameter that changes nothing is told with the reason; one that changes something is not.
+#include "experiments/parameter_effects.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "experiments/experiment_file.h"
+#include "experiments/method_file.h"
+#include "tests/message_of.h"
+
+namespace plumb {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+Method with_true_direct_light() {
+    Method method;
+    method.direct.source = SourceOfStage::truth;
+    return method;
+}
+
+TEST(ParameterEffects, TrueDirectLightIsThatOfTheFirstLayerOnly) {
+    Method method = with_true_direct_light();
+    // The method lights the second layer itself, for radiosity to gather from.
+    for (const char* name : {"direct.emitters", "direct.shadow.cube_size", "direct.shadow.emitter_size"})
+        EXPECT_THAT(reason_without_effect(method, name), IsEmpty()) << name;
+    Method other = method;
+    other.direct.shadow.cube_size = 64;
+    EXPECT_NE(method_hash(method), method_hash(other));
+
+    method.gbuffer.layers = method.ao.layers = method.radiosity.layers = 1;
+    EXPECT_THAT(reason_without_effect(method, "direct.emitters"), HasSubstr("direct.source = \"truth\""));
+    method.radiosity.fill = AmbientSource::probe;  // which lights what it sees
+    EXPECT_THAT(reason_without_effect(method, "direct.emitters"), IsEmpty());
+
+    method = with_true_direct_light();
+    method.radiosity.layers = 1;
+    const std::vector<std::string> shown = {"total", "ao"}, hidden = {"layer2.direct"};
+    EXPECT_THAT(reason_without_effect(method, "direct.emitters", &shown), HasSubstr("direct.source"));
+    EXPECT_THAT(reason_without_effect(method, "direct.emitters", &hidden), IsEmpty());
+    EXPECT_THAT(reason_without_effect(method, "direct.emitters"), IsEmpty()) << "any plane may be asked for";
+}
+
+TEST(ParameterEffects, AGuardBandIsForWhatGathersFromIt) {
+    Method method;
+    method.ao.enabled = method.radiosity.enabled = false;
+    EXPECT_THAT(reason_without_effect(method, "gbuffer.guard_band"), HasSubstr("reflections.enabled = false"));
+    method.gbuffer.generation = LayerGeneration::reproject;
+    EXPECT_THAT(reason_without_effect(method, "gbuffer.guard_band"), IsEmpty());
+    method.gbuffer.generation = LayerGeneration::previous;
+    EXPECT_THAT(reason_without_effect(method, "gbuffer.guard_band"), HasSubstr("ao.enabled = false"));
+    method.reflections.enabled = true;
+    EXPECT_THAT(reason_without_effect(method, "gbuffer.guard_band"), IsEmpty());
+}
+
+TEST(ParameterEffects, CubesNeedSomethingThatCastsShadowsIntoThem) {
+    for (const char* name : {"direct.shadow.cube_generation", "direct.shadow.cube_distance"}) {
+        Method method;
+        EXPECT_THAT(reason_without_effect(method, name), IsEmpty());
+        method.direct.emitters = false;
+        EXPECT_THAT(reason_without_effect(method, name), IsEmpty()) << "lamps have cubes";
+        method.direct.shadow.point_map = PointShadowMap::dual_paraboloid;
+        EXPECT_THAT(reason_without_effect(method, name), HasSubstr("dual_paraboloid"));
+        method.direct.emitters = true;
+        EXPECT_THAT(reason_without_effect(method, name), IsEmpty()) << "emissive surfaces have cubes";
+        method.direct = {.emitters = false, .shadow = {.lamps = false}};
+        EXPECT_THAT(reason_without_effect(method, name), HasSubstr("direct.shadow.lamps = false"));
+    }
+}
+
+TEST(ParameterEffects, NothingIsCarriedOnWhereAllIsTakenAway) {
+    Method method;
+    method.radiosity.carry = true;
+    method.radiosity.damping = 1.0f;
+    for (const char* name : {"radiosity.carry_from", "radiosity.carry_to", "radiosity.second_layer"})
+        EXPECT_THAT(reason_without_effect(method, name), HasSubstr("radiosity.damping = 1")) << name;
+    EXPECT_THAT(reason_without_effect(method, "radiosity.damping"), IsEmpty());
+}
+
+TEST(ParameterEffects, TheFormatOfLitRadianceIsForWhatTheMethodLights) {
+    Method method = with_true_direct_light();
+    EXPECT_THAT(reason_without_effect(method, "gbuffer.radiance_format"), HasSubstr("direct.source = \"truth\""));
+    method.radiosity.bounces = 2;
+    EXPECT_THAT(reason_without_effect(method, "gbuffer.radiance_format"), IsEmpty());
+    method.radiosity = {.carry = true};
+    EXPECT_THAT(reason_without_effect(method, "gbuffer.radiance_format"), IsEmpty());
+}
+
+TEST(ParameterEffects, LayersThatNobodyAsksForHaveNoParameters) {
+    Method method;
+    method.ao.layers = method.radiosity.layers = 1;
+    const std::vector<std::string> first = {"total"}, second = {"total", "layer2.normal"}, third = {"layer3.depth"};
+    for (const char* name : {"gbuffer.minimum_separation", "gbuffer.separation_unit", "gbuffer.generation"}) {
+        EXPECT_THAT(reason_without_effect(method, name, &first), HasSubstr("no stage reads a second layer")) << name;
+        EXPECT_THAT(reason_without_effect(method, name, &second), IsEmpty()) << name;
+        Method reading = method;
+        reading.ao.temporal = {.alpha = 0.5f, .layers = 2};
+        EXPECT_THAT(reason_without_effect(reading, name, &first), IsEmpty()) << name;
+    }
+    method.gbuffer.layers = 3;
+    EXPECT_THAT(reason_without_effect(method, "gbuffer.layers", &second), HasSubstr("no plane of layer 3"));
+    EXPECT_THAT(reason_without_effect(method, "gbuffer.layers", &third), IsEmpty());
+    method.gbuffer.layers = 4;
+    EXPECT_THAT(reason_without_effect(method, "gbuffer.layers", &third), HasSubstr("no plane of layer 4"));
+}
+
+TEST(ParameterEffects, AnExperimentRefusesWhatItsPlanesDoNotShow) {
+    const auto parse = [](const std::string& method) {
+        const std::string text = "planes = [\"total\"]\nscenes = [{ scene = \"cornell\" }]\nmethods = [" + method + "]";
+        parse_experiment(parse_config(text, "e.toml"), "e.toml");
+    };
+    const auto failure = [&](const std::string& method) { return message_of<ConfigError>([&] { parse(method); }); };
+    EXPECT_THAT(failure("{ name = \"deep\", gbuffer.layers = 4 }"),
+                AllOf(HasSubstr("e.toml:3: gbuffer.layers"), HasSubstr("no plane of layer 4")));
+    EXPECT_THAT(failure("{ name = \"flat\", ao.layers = 1, radiosity.layers = 1, gbuffer.generation = \"delay\" }"),
+                HasSubstr("gbuffer.generation"));
+    EXPECT_NO_THROW(parse("{ name = \"deep\", gbuffer.generation = \"delay\" }"));
+}
+
+}  // namespace
+}  // namespace plumb
