@@ -23,7 +23,7 @@ glm::mat4 extrapolate(const glm::mat4& previous, const glm::mat4& now) {
 View extrapolate(const View& previous, const View& now) {
     Camera camera = now.camera();
     camera.world_from_camera = extrapolate(previous.camera().world_from_camera, camera.world_from_camera);
-    return View(camera, now.width(), now.height());
+    return View(camera, now.width(), now.height()).with_offset(now.offset());
 }
 
 }  // namespace plumb

@@ -34,7 +34,7 @@ struct FrameRequest {
 // A rigid motion or an affine one that takes `previous` to `now`, applied once more: constant velocity, also of
 // turning.
 glm::mat4 extrapolate(const glm::mat4& previous, const glm::mat4& now);
-// The camera goes on as it moved; field of view and planes stay.
+// The camera goes on as it moved; field of view, planes and the offset of the pixels stay.
 View extrapolate(const View& previous, const View& now);
 
 }  // namespace plumb

@@ -307,5 +307,15 @@ TEST_P(LayersTest, LayersThatAVariantCannotDrawAreRefused) {
     EXPECT_THAT(message(method), HasSubstr("1.5 of the frustum"));
 }
 
+// A view that looks past its camera's axis is foreseen past it, too.
+TEST(Extrapolation, TheNextViewKeepsTheOffsetOfItsPixels) {
+    const auto at = [](float x) {
+        return View(Camera::look_at("walk", {x, 1.0f, 3.0f}, {x, 1.0f, 0.0f}, 0.9f), 40, 30).with_offset({3.5f, -2.0f});
+    };
+    const View next = extrapolate(at(0.0f), at(0.25f));
+    EXPECT_EQ(next.offset(), at(0.0f).offset());
+    EXPECT_NEAR(next.camera().position().x, 0.5f, 1e-6f);  // a rounding of the inverse and of the product
+}
+
 }  // namespace
 }  // namespace plumb
