@@ -69,7 +69,10 @@ public:
 
     // Bytes that the wrapper objects of this context hold in textures and buffers, as their formats say.
     std::size_t allocated_bytes() const { return allocated_bytes_; }
-    void count_allocation(std::ptrdiff_t bytes) { allocated_bytes_ += static_cast<std::size_t>(bytes); }
+    // How many wrapper objects of any kind have ever been created, those that are gone included.
+    std::size_t created_objects() const { return created_objects_; }
+    void count_creation(std::size_t bytes) { ++created_objects_, allocated_bytes_ += bytes; }
+    void count_destruction(std::size_t bytes) { allocated_bytes_ -= bytes; }
 
 private:
     GlContext(std::unique_ptr<GlBackendContext> backend_context, GlBackend backend, bool debug);
@@ -79,7 +82,7 @@ private:
     std::unique_ptr<GlBackendContext> backend_context_;
     GlInfo info_;
     bool debug_;
-    std::size_t allocated_bytes_ = 0;
+    std::size_t allocated_bytes_ = 0, created_objects_ = 0;
     std::string messages_;
 };
 

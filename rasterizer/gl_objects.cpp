@@ -10,7 +10,7 @@ namespace plumb {
 
 GlObject::GlObject(GlContext& context, Kind kind, GLuint id, std::size_t bytes)
     : context_(&context), kind_(kind), id_(id), bytes_(bytes) {
-    context.count_allocation(static_cast<std::ptrdiff_t>(bytes));
+    context.count_creation(bytes);
 }
 
 GlObject& GlObject::operator=(GlObject&& other) noexcept {
@@ -48,7 +48,7 @@ void GlObject::destroy() noexcept {
             gl.DeleteProgram(id_);
             break;
     }
-    context_->count_allocation(-static_cast<std::ptrdiff_t>(bytes_));
+    context_->count_destruction(bytes_);
     id_ = 0;
 }
 

@@ -1,5 +1,5 @@
 // Move-only owners of OpenGL objects. Storage is immutable; every owner makes its own context current before it acts
-// and reports the bytes it holds to the context.
+// and reports itself and the bytes it holds to the context.
 #pragma once
 
 #include <cstddef>
