@@ -193,7 +193,10 @@ int run(const ReproduceCommandOptions& options, const CommonOptions& common) {
     for (const std::string& name : names) {
         const int one = names.size() == 1 ? reproducer.reproduce(name)  // its error tells the exit code
                                           : attempt(name, [&] { return reproducer.reproduce(name); });
-        if (one == exit_interrupted) return one;
+        if (one == exit_interrupted) {
+            reproducer.print_failures();  // of those before it
+            return one;
+        }
         code = std::max(code, one);
     }
     if (options.all || !options.report.empty()) {

@@ -16,6 +16,7 @@
 #include "experiments/exit_code.h"
 #include "experiments/experiment_file.h"
 #include "experiments/generation.h"
+#include "experiments/headline_table.h"
 #include "experiments/interruption.h"
 #include "experiments/ladder.h"
 #include "experiments/recorded_run.h"
@@ -58,6 +59,15 @@ RunOptions run_options_of(const RunCommandOptions& options, const std::string& n
     return run;
 }
 
+// `what` failed: "cell".
+void print_failures(const std::vector<CellFailure>& failures, const std::string& what) {
+    if (failures.empty()) return;
+    fmt::print("\n{} {}{} failed:\n", failures.size(), what, failures.size() == 1 ? "" : "s");
+    for (const CellFailure& failure : failures) fmt::print("  {}: {}\n", failure.cell, failure.message);
+}
+
+ExitCode exit_code_of(const std::vector<CellFailure>& failures) { return failures.empty() ? exit_fine : exit_failed; }
+
 int run_convergence(const RunCommandOptions& options, const CommonOptions& common, ConvergenceExperiment experiment) {
     if (options.quick) make_quick(experiment);
     const RunOptions run_options = run_options_of(options, experiment.name);
@@ -71,7 +81,8 @@ int run_convergence(const RunCommandOptions& options, const CommonOptions& commo
     fmt::print("\n{}\n{:.0f} s on {}\n", print_convergence_table(results), results.seconds, results.system.cpu);
     for (const char* file : {"convergence.csv", "convergence.json", "convergence.svg", "index.html"})
         fmt::print("{}\n", (run_options.output / file).string());
-    return exit_fine;
+    print_failures(results.failures, "scene");
+    return exit_code_of(results.failures);
 }
 
 int run_generation(const RunCommandOptions& options, const CommonOptions& common, GenerationExperiment experiment) {
@@ -88,19 +99,19 @@ int run_generation(const RunCommandOptions& options, const CommonOptions& common
                results.system.cpu);
     for (const char* file : {"generation.csv", "generation.json"})
         fmt::print("{}\n", (run_options.output / file).string());
-    return exit_fine;
-}
-
-void print_failures(const RunResults& results) {
-    if (results.failures.empty()) return;
-    fmt::print("\n{} cell{} failed:\n", results.failures.size(), results.failures.size() == 1 ? "" : "s");
-    for (const CellFailure& failure : results.failures) fmt::print("  {}: {}\n", failure.cell, failure.message);
+    print_failures(results.failures, "walk");
+    return exit_code_of(results.failures);
 }
 
 void write_figures(const RunResults& results, const std::filesystem::path& folder) {
     if (!results.waterfalls.empty()) {
         write_text_atomically(folder / "ladder.svg", print_waterfalls(results.waterfalls));
+        write_text_atomically(folder / "ladder.csv", print_waterfall_csv(results.waterfalls));
         fmt::print("Ladder  {}\n", (folder / "ladder.svg").string());
+    }
+    if (const std::string headline = print_headline(results); !headline.empty()) {
+        write_text_atomically(folder / "headline.md", headline);
+        fmt::print("Summary {}\n", (folder / "headline.md").string());
     }
     const std::string figure = print_accuracy_figure(results);
     if (figure.empty()) return;
@@ -125,7 +136,7 @@ RunResults run_comparison(const RunOptions& run_options, const CommonOptions& co
     for (const ReferenceUse& use : results.references) cached += use.from_cache ? 1 : 0;
     fmt::print("\n{} truths ({} of them from the cache), {} on {}, {:.0f} s\n", results.references.size(), cached,
                results.gl_renderer, results.system.cpu, results.seconds);
-    print_failures(results);
+    print_failures(results.failures, "cell");
     fmt::print("\nTable   {}\nNumbers {}\nPage    {}\n", (run_options.output / "results.csv").string(),
                (run_options.output / "results.json").string(), (run_options.output / "index.html").string());
     write_figures(results, run_options.output);
@@ -134,8 +145,7 @@ RunResults run_comparison(const RunOptions& run_options, const CommonOptions& co
 }
 
 int exit_code_of(const RunResults& results) {
-    if (results.interrupted) return exit_interrupted;
-    return results.failures.empty() ? exit_fine : exit_failed;
+    return results.interrupted ? exit_interrupted : exit_code_of(results.failures);
 }
 
 // A run as its results.json tells it.
@@ -152,8 +162,7 @@ int repeat(const RunCommandOptions& options, const CommonOptions& common) {
     const RunResults results = run_comparison(run_options, common, recorded.experiment);
     if (results.interrupted) return exit_interrupted;
     const RunDifference apart = difference(recorded, results);
-    fmt::print("\n{} of {} rows have the recorded measures, bit for bit\n",
-               apart.rows - static_cast<int>(apart.rows_apart.size()), apart.rows);
+    fmt::print("\n{} of {} rows are as recorded, bit for bit but for their times\n", apart.same, apart.rows);
     for (const std::string& row : apart.rows_apart) fmt::print("  {}\n", row);
     for (const std::string& cause : apart.causes) fmt::print("not as it was: {}\n", cause);
     return apart.rows_apart.empty() ? exit_code_of(results) : exit_failed;

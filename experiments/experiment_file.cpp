@@ -74,6 +74,48 @@ ExperimentScene read_scene(ConfigReader& reader, const ExperimentScene& defaults
     return scene;
 }
 
+// Of quantities; what scenes say of themselves comes before it.
+ExperimentScene read_scene_defaults(ConfigReader& quantities) {
+    ExperimentScene defaults;
+    defaults.ao_radius = static_cast<float>(quantities.number("ao_radius", defaults.ao_radius, 1e-6, no_limit));
+    defaults.indirect_radius =
+        static_cast<float>(quantities.number("indirect_radius", defaults.indirect_radius, 1e-6, no_limit));
+    defaults.minimum_separation =
+        static_cast<float>(quantities.number("minimum_separation", defaults.minimum_separation, 0.0, 1e6));
+    quantities.finish();
+    return defaults;
+}
+
+void read_reference(ConfigReader& reader, Experiment& experiment) {
+    ConfigReader reference = reader.table("reference");
+    experiment.reference.samples = reference.integer("samples", experiment.reference.samples, 2, 1 << 24);
+    experiment.reference.path_samples = reference.integer(
+        "path_samples", std::min(experiment.reference.samples, experiment.reference.path_samples), 2, 1 << 24);
+    for (const auto& [key, samples] : {std::pair{"samples", experiment.reference.samples},
+                                       std::pair{"path_samples", experiment.reference.path_samples}}) {
+        if (samples % 2 != 0) reference.fail(key, "must be even, because the reference keeps two halves");
+    }
+    experiment.reference.target_error = reference.number("target_error", experiment.reference.target_error, 0.0, 1.0);
+    experiment.reference.seed = static_cast<std::uint64_t>(
+        reference.integer("seed", static_cast<int>(experiment.reference.seed), 0, std::numeric_limits<int>::max()));
+    experiment.reference.most_noise = reference.number("most_noise", experiment.reference.most_noise, 1e-6, 1e6);
+    reference.finish();
+}
+
+void read_timing(ConfigReader& reader, Experiment& experiment) {
+    ConfigReader timing = reader.table("timing");
+    experiment.timing.warm_up = timing.integer("warm_up", experiment.timing.warm_up, 0, 1000);
+    experiment.timing.repetitions = timing.integer("repetitions", experiment.timing.repetitions, 1, 100000);
+    timing.finish();
+
+    experiment.seeds = reader.integer("seeds", experiment.seeds, 1, 256);
+    experiment.path_tracer_samples = reader.integers("path_tracer_samples", experiment.path_tracer_samples, 2, 1 << 20);
+    for (const int samples : experiment.path_tracer_samples) {
+        if (samples % 2 != 0)
+            reader.fail("path_tracer_samples", fmt::format("holds {}, but must hold even numbers", samples));
+    }
+}
+
 // One value of a swept parameter, as a name shows it.
 std::string sweep_text(const ConfigValue& value) {
     if (const auto* whole = std::get_if<std::int64_t>(&value.value)) return fmt::format("{}", *whole);
@@ -82,8 +124,7 @@ std::string sweep_text(const ConfigValue& value) {
 }
 
 // The methods that `sweep` makes of a method's table.
-void add_sweep(const ConfigReader& reader, const ConfigValue& table, const std::vector<std::string>& planes,
-               MethodList& known, MethodSelection& selection) {
+void add_sweep(const ConfigReader& reader, const ConfigValue& table, MethodList& known, MethodSelection& selection) {
     const auto fail = [&](int line, std::string_view message) {
         throw ConfigError(fmt::format("{}:{}: methods.sweep: {}", reader.source(), line, message));
     };
@@ -102,9 +143,9 @@ void add_sweep(const ConfigReader& reader, const ConfigValue& table, const std::
     for (const ConfigValue& value : *values) {
         const std::string text = sweep_text(value);
         if (text.empty()) fail(value.line, fmt::format("'{}' must hold numbers, not {}", parameter, value.type_name()));
-        Method method = parse_method(plain, reader.source(), known, &planes);
+        Method method = parse_method(plain, reader.source(), known);
         const std::string curve = method.name;
-        set_method_parameter(method, fmt::format("{}={}", parameter, text), &planes);
+        set_method_parameter(method, fmt::format("{}={}", parameter, text));
         method.name = fmt::format("{}, {} = {}", curve, parameter, text);
         selection.sweep_points[method.name] = {curve, parameter, std::stod(text)};
         known.push_back(method);
@@ -114,23 +155,29 @@ void add_sweep(const ConfigReader& reader, const ConfigValue& table, const std::
 
 }  // namespace
 
-MethodSelection read_methods(ConfigReader& reader, const std::vector<std::string>& planes) {
+MethodSelection read_methods(ConfigReader& reader, const MethodFiles& kept) {
     const ConfigValue* tables = reader.value("methods");
     if (!tables) reader.fail("", "'methods' is missing: name at least one method");
     const auto* array = std::get_if<ConfigArray>(&tables->value);
     if (!array || array->empty()) reader.fail("methods", "must be an array with at least one method");
 
     MethodList known = builtin_methods();
+    MethodFileReader files(reader, kept);
     MethodSelection selection;
     MethodList& methods = selection.methods;
     for (const ConfigValue& entry : *array) {
+        files.add_base(entry, known);
         const auto* members = std::get_if<ConfigMembers>(&entry.value);
         if (members && std::ranges::find(*members, "sweep", &ConfigMember::key) != members->end()) {
-            add_sweep(reader, entry, planes, known, selection);
+            add_sweep(reader, entry, known, selection);
             continue;
         }
         Method method;
-        if (const auto* name = std::get_if<std::string>(&entry.value)) {
+        const auto* name = std::get_if<std::string>(&entry.value);
+        if (name && MethodFileReader::is_file(*name)) {
+            method = files.load(*name);
+            known.push_back(method);
+        } else if (name) {
             const Method* found = find_method(known, *name);
             if (!found) {
                 std::vector<std::string> names;
@@ -139,7 +186,7 @@ MethodSelection read_methods(ConfigReader& reader, const std::vector<std::string
             }
             method = *found;
         } else {
-            method = parse_method(entry, reader.source(), known, &planes);
+            method = parse_method(entry, reader.source(), known);
             known.push_back(method);
         }
         methods.push_back(std::move(method));
@@ -149,6 +196,7 @@ MethodSelection read_methods(ConfigReader& reader, const std::vector<std::string
         if (!names.insert(method.name).second)
             reader.fail("methods", fmt::format("two methods are called '{}'", method.name));
     }
+    selection.files = files.files();
     return selection;
 }
 
@@ -162,7 +210,7 @@ ExperimentKind kind_of(const ConfigValue& table, const std::filesystem::path& fi
                 fmt::format("no kind '{}'{}", kind, name_hint(kind, {"comparison", "convergence", "generation"})));
 }
 
-Experiment parse_experiment(const ConfigValue& table, const std::filesystem::path& file) {
+Experiment parse_experiment(const ConfigValue& table, const std::filesystem::path& file, const MethodFiles& kept) {
     ConfigReader reader(table, file.string());
     reader.text("kind", "comparison");
     Experiment experiment;
@@ -182,42 +230,11 @@ Experiment parse_experiment(const ConfigValue& table, const std::filesystem::pat
 
     ConfigReader quantities = reader.table("quantities");
     experiment.quantities = read_quantities(quantities);
-    ExperimentScene defaults;
-    defaults.ao_radius = static_cast<float>(quantities.number("ao_radius", defaults.ao_radius, 1e-6, no_limit));
-    defaults.indirect_radius =
-        static_cast<float>(quantities.number("indirect_radius", defaults.indirect_radius, 1e-6, no_limit));
-    defaults.minimum_separation =
-        static_cast<float>(quantities.number("minimum_separation", defaults.minimum_separation, 0.0, 1e6));
-    quantities.finish();
-
-    ConfigReader reference = reader.table("reference");
-    experiment.reference.samples = reference.integer("samples", experiment.reference.samples, 2, 1 << 24);
-    experiment.reference.path_samples = reference.integer(
-        "path_samples", std::min(experiment.reference.samples, experiment.reference.path_samples), 2, 1 << 24);
-    for (const auto& [key, samples] : {std::pair{"samples", experiment.reference.samples},
-                                       std::pair{"path_samples", experiment.reference.path_samples}}) {
-        if (samples % 2 != 0) reference.fail(key, "must be even, because the reference keeps two halves");
-    }
-    experiment.reference.target_error = reference.number("target_error", experiment.reference.target_error, 0.0, 1.0);
-    experiment.reference.seed = static_cast<std::uint64_t>(
-        reference.integer("seed", static_cast<int>(experiment.reference.seed), 0, std::numeric_limits<int>::max()));
-    experiment.reference.most_noise = reference.number("most_noise", experiment.reference.most_noise, 1e-6, 1e6);
-    reference.finish();
-
+    const ExperimentScene defaults = read_scene_defaults(quantities);
+    read_reference(reader, experiment);
     ConfigReader measures = reader.table("measures");
     experiment.measures = read_measures(measures);
-
-    ConfigReader timing = reader.table("timing");
-    experiment.timing.warm_up = timing.integer("warm_up", experiment.timing.warm_up, 0, 1000);
-    experiment.timing.repetitions = timing.integer("repetitions", experiment.timing.repetitions, 1, 100000);
-    timing.finish();
-
-    experiment.seeds = reader.integer("seeds", experiment.seeds, 1, 256);
-    experiment.path_tracer_samples = reader.integers("path_tracer_samples", experiment.path_tracer_samples, 2, 1 << 20);
-    for (const int samples : experiment.path_tracer_samples) {
-        if (samples % 2 != 0)
-            reader.fail("path_tracer_samples", fmt::format("holds {}, but must hold even numbers", samples));
-    }
+    read_timing(reader, experiment);
 
     for (ConfigReader& scene : reader.tables("scenes")) experiment.scenes.push_back(read_scene(scene, defaults));
     if (experiment.scenes.empty()) reader.fail("", "'scenes' is missing: write at least one [[scenes]] table");
@@ -226,9 +243,10 @@ Experiment parse_experiment(const ConfigValue& table, const std::filesystem::pat
         if (!names.insert(scene.scene).second) reader.fail("scenes", fmt::format("'{}' is there twice", scene.scene));
     }
     experiment.oracle_layers = reader.integers("oracle", {}, 0, 16);
-    MethodSelection selection = read_methods(reader, experiment.planes);
+    MethodSelection selection = read_methods(reader, kept);
     experiment.methods = std::move(selection.methods);
     experiment.sweep_points = std::move(selection.sweep_points);
+    experiment.method_files = std::move(selection.files);
     auto& presentation = std::get<ConfigMembers>(experiment.presentation.value);
     for (const char* key : {"figures", "originals", "claims", "ladders"}) {
         if (const ConfigValue* tables = reader.value(key)) presentation.push_back({key, *tables});

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "experiments/method_file.h"
+#include "experiments/method_files.h"
 #include "frames/quantities.h"
 #include "metrics/comparison.h"
 
@@ -79,6 +80,7 @@ struct Experiment {
     std::vector<int> oracle_layers;
     std::vector<ExperimentScene> scenes;
     MethodList methods;
+    MethodFiles method_files;                        // that some of them came from
     std::map<std::string, SweepPoint> sweep_points;  // of the methods that a sweep made, by their names
     // The tables `figures`, `originals`, `claims` and `ladders` as the file has them: what is made of the results,
     // never of pixels.
@@ -99,15 +101,16 @@ ExperimentKind kind_of(const ConfigValue& table, const std::filesystem::path& fi
 struct MethodSelection {
     MethodList methods;
     std::map<std::string, SweepPoint> sweep_points;
+    MethodFiles files;
 };
 
-// The key `methods`: names of methods, or tables. A table with `sweep = { "ao.samples" = [6, 20, 50] }` makes one
-// method per value, named "NAME, ao.samples = 6"...; NAME itself is then no method. Throws ConfigError, also for
-// parameters that have no effect on `planes`, which the experiment asks for.
-MethodSelection read_methods(ConfigReader& reader, const std::vector<std::string>& planes);
+// The key `methods`: names of methods, method files (method_files.h; those in `kept` as they were), or tables. A table
+// with `sweep = { "ao.samples" = [6, 20, 50] }` makes one method per value, named "NAME, ao.samples = 6"...; NAME
+// itself is then no method. Throws ConfigError.
+MethodSelection read_methods(ConfigReader& reader, const MethodFiles& kept = {});
 
-// Throws ConfigError with file and line.
-Experiment parse_experiment(const ConfigValue& table, const std::filesystem::path& file);
+// Throws ConfigError with file and line. `kept`: texts of method files that are taken instead of those on the disk.
+Experiment parse_experiment(const ConfigValue& table, const std::filesystem::path& file, const MethodFiles& kept = {});
 Experiment load_experiment(const std::filesystem::path& file);
 
 // Takes those optional scenes out that cannot be loaded, and returns one line for each: its name and the reason. Throws

@@ -1,50 +1,58 @@
 #include "experiments/recorded_run.h"
 
-#include <cmath>
+#include <algorithm>
 #include <fstream>
-#include <set>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "experiments/build_facts.h"
-#include "experiments/no_value.h"
+#include "experiments/result_files.h"
 
 namespace plumb {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string key_of(const std::string& scene, const std::string& place, const std::string& plane,
-                   const std::string& truth, const std::string& method) {
-    return fmt::format("{} / {} / {}{} / {}", scene, place, plane, truth.empty() ? "" : fmt::format(" ({})", truth),
-                       method);
+std::string key_of(const Json& row) {
+    const auto text = [&](const char* name) { return row.at(name).get<std::string>(); };
+    const std::string truth = text("truth");
+    return fmt::format("{} / {} / {}{} / {}", text("scene"), row.value("path", text("view")), text("plane"),
+                       truth.empty() ? "" : fmt::format(" ({})", truth), text("method"));
 }
 
-double recorded_number(const Json& json) { return json.is_null() ? no_value : json.get<double>(); }
+// Every value of a row by its place in the row. Numbers are written so that no two have the same text; what is not
+// finite is null.
+std::map<std::string, std::string> values_of_row(Json row) {
+    row.erase("milliseconds");  // never comes out the same
+    const Json flat = row.flatten();
+    std::map<std::string, std::string> values;
+    for (const auto& [pointer, value] : flat.items()) {
+        std::string name = pointer.substr(1);
+        std::ranges::replace(name, '/', '.');
+        values.emplace(std::move(name), value.dump());
+    }
+    return values;
+}
 
-// The same bits, or neither finite: JSON has no infinities.
-bool same(double a, double b) { return a == b || (!std::isfinite(a) && !std::isfinite(b)); }
+std::map<std::string, std::map<std::string, std::string>> rows_of(const Json& results) {
+    std::map<std::string, std::map<std::string, std::string>> rows;
+    for (const Json& row : results.at("rows")) rows[key_of(row)] = values_of_row(row);
+    return rows;
+}
 
-// Empty where all measures are the same.
-std::string first_difference(const std::vector<std::pair<std::string, double>>& recorded,
-                             const std::vector<std::pair<std::string, double>>& now) {
+// Empty where all values are the same.
+std::string first_difference(const std::map<std::string, std::string>& recorded,
+                             const std::map<std::string, std::string>& now) {
     for (const auto& [name, value] : now) {
-        const auto found = std::ranges::find(recorded, name, &std::pair<std::string, double>::first);
-        if (found == recorded.end()) return fmt::format("{} was not recorded", name);
-        if (!same(found->second, value)) return fmt::format("{} was {:.17g}, is {:.17g}", name, found->second, value);
+        const auto found = recorded.find(name);
+        if (found == recorded.end()) continue;  // measured only since
+        if (found->second != value) return fmt::format("{} was {}, is {}", name, found->second, value);
+    }
+    for (const auto& entry : recorded) {
+        if (!now.contains(entry.first)) return fmt::format("{} is not there any more", entry.first);
     }
     return "";
-}
-
-void read_rows(const Json& json, RecordedRun& run) {
-    for (const Json& row : json.at("rows")) {
-        const std::string place = row.value("path", row.at("view").get<std::string>());
-        auto& measures =
-            run.measures[key_of(row.at("scene"), place, row.at("plane"), row.at("truth"), row.at("method"))];
-        for (const auto& [name, value] : row.at("measures").items())
-            measures.emplace_back(name, recorded_number(value));
-    }
 }
 
 }  // namespace
@@ -60,13 +68,14 @@ RecordedRun read_recorded_run(const std::filesystem::path& file) {
         if (run.experiment_text.empty()) throw ConfigError("its experiment is empty");
         const Json& experiment = json.at("experiment");
         const std::string source = experiment.at("file");
-        run.experiment = parse_experiment(parse_config(run.experiment_text, source), source);
+        run.experiment = parse_experiment(parse_config(run.experiment_text, source), source,
+                                          json.value("method_files", MethodFiles{}));
         run.experiment.name = experiment.at("name");
         if (experiment.at("quick")) make_quick(run.experiment);
         run.git_describe = json.at("program").at("git"), run.integrator_hash = json.at("program").at("integrator_hash");
         run.gl_renderer = json.at("gl").at("renderer");
         run.scene_hashes = json.at("scene_hashes");
-        read_rows(json, run);
+        run.rows = rows_of(json);
         return run;
     } catch (const std::exception& error) {
         throw ConfigError(
@@ -78,21 +87,23 @@ RecordedRun read_recorded_run(const std::filesystem::path& file) {
 
 RunDifference difference(const RecordedRun& recorded, const RunResults& results) {
     RunDifference difference;
-    std::set<std::string> found;
-    for (const ResultRow& row : results.rows) {
-        const std::string key = key_of(row.scene, row.place(), row.plane, row.truth, row.method);
-        const auto before = recorded.measures.find(key);
-        if (before == recorded.measures.end()) {
+    difference.rows = static_cast<int>(recorded.rows.size());
+    const auto rows = rows_of(Json::parse(print_json(results)));
+    for (const auto& [key, values] : rows) {
+        const auto before = recorded.rows.find(key);
+        if (before == recorded.rows.end()) {
             difference.rows_apart.push_back(fmt::format("{}: was not there", key));
             continue;
         }
-        found.insert(key);
-        ++difference.rows;
-        const std::string apart = first_difference(before->second, row.measures);
-        if (!apart.empty()) difference.rows_apart.push_back(fmt::format("{}: {}", key, apart));
+        const std::string apart = first_difference(before->second, values);
+        if (apart.empty())
+            ++difference.same;
+        else
+            difference.rows_apart.push_back(fmt::format("{}: {}", key, apart));
     }
-    for (const auto& [key, measures] : recorded.measures) {
-        if (!found.contains(key)) difference.rows_apart.push_back(fmt::format("{}: is not there any more", key));
+    for (const auto& entry : recorded.rows) {
+        if (!rows.contains(entry.first))
+            difference.rows_apart.push_back(fmt::format("{}: is not there any more", entry.first));
     }
     const auto compare = [&](const std::string& what, const std::string& before, std::string_view now) {
         if (before != now) difference.causes.push_back(fmt::format("{}: was {}, is {}", what, before, now));

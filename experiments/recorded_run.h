@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <map>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "experiments/results.h"
@@ -16,16 +15,17 @@ struct RecordedRun {
     std::string experiment_text;
     std::string git_describe, integrator_hash, gl_renderer;
     std::map<std::string, std::string> scene_hashes;
-    // By "scene / view or path / plane / truth / method": every measure, NaN where the file has null.
-    std::map<std::string, std::vector<std::pair<std::string, double>>> measures;
+    // By "scene / view or path / plane / truth / method": everything that the file says of it but its times, as the
+    // file writes it, by names such as "measures.rmse", "regions.border.unbiased_mse" and "frames.2.flicker".
+    std::map<std::string, std::map<std::string, std::string>> rows;
 };
 
 // Throws ConfigError for a file that is no results.json of a comparison, and for one that holds no experiment.
 RecordedRun read_recorded_run(const std::filesystem::path& file);
 
 struct RunDifference {
-    int rows = 0;                         // compared
-    std::vector<std::string> rows_apart;  // one line for each that is not the same bit for bit, with the first measure
+    int rows = 0, same = 0;               // on record; the same bit for bit
+    std::vector<std::string> rows_apart;  // one line for each that is not the same bit for bit, with the first value
                                           // that differs
     std::vector<std::string> causes;      // what else is not as it was: program, OpenGL, scenes
 };

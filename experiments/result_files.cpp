@@ -88,6 +88,10 @@ Json row_json(const ResultRow& row) {
                          {"unbiased_mse_lower", number_json(row.seeds_mse_lower)},
                          {"unbiased_mse_upper", number_json(row.seeds_mse_upper)}};
     }
+    json["unbiased_mse"] = {{"mse", number_json(row.mse)},
+                            {"lower", number_json(row.mse_lower)},
+                            {"upper", number_json(row.mse_upper)},
+                            {"reference_noise", number_json(row.noise_mse)}};
     for (const auto& [name, estimate] : row.over_seeds) {
         json["seeds"][name + "_lower"] = number_json(estimate.lower);
         json["seeds"][name + "_upper"] = number_json(estimate.upper);
@@ -153,6 +157,19 @@ Json experiment_json(const Experiment& experiment) {
     json["methods"] = Json::array();
     for (const Method& method : experiment.methods) {
         json["methods"].push_back({{"name", method.name}, {"parameters", parameters_of(method)}});
+    }
+    return json;
+}
+
+Json ladder_json(const Waterfall& waterfall) {
+    Json json = {{"title", waterfall.title}, {"rungs", Json::array()}};
+    for (const WaterfallBar& bar : waterfall.bars) {
+        json["rungs"].push_back({{"rung", bar.label},
+                                 {"rmse_above", bar.from},
+                                 {"rmse", bar.to},
+                                 {"adds_lower", number_json(bar.change_lower)},
+                                 {"adds_upper", number_json(bar.change_upper)},
+                                 {"time", bar.note}});
     }
     return json;
 }
@@ -227,6 +244,7 @@ std::string print_json(const RunResults& results) {
                   {"timer", timer_description(results.gl_software)}};
     json["experiment"] = experiment_json(results.experiment);
     json["experiment_text"] = results.experiment_text;
+    json["method_files"] = results.experiment.method_files;
     json["scene_hashes"] = results.scene_hashes;
     json["summary"] = results.summary;
     json["references"] = Json::array();
@@ -242,6 +260,8 @@ std::string print_json(const RunResults& results) {
     for (const CellFailure& failure : results.failures) {
         json["failures"].push_back({{"cell", failure.cell}, {"message", failure.message}});
     }
+    json["ladders"] = Json::array();
+    for (const Waterfall& waterfall : results.waterfalls) json["ladders"].push_back(ladder_json(waterfall));
     json["rows"] = Json::array();
     for (const ResultRow& row : results.rows) json["rows"].push_back(row_json(row));
     // Bytes that are no UTF-8 (a file name) are replaced rather than losing all results.

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/message_of.h"
+#include "tests/temporary_folder.h"
 
 namespace plumb {
 namespace {
@@ -101,6 +102,58 @@ frames = 5
     EXPECT_THAT(failure("ao.samples", "ao.smaples"), HasSubstr("'ao.samples'"));
     EXPECT_THAT(failure("[6, 20]", "[6, 6]"), HasSubstr("two methods are called"));
     EXPECT_THAT(failure("frames = 5", "frames = 1"), HasSubstr("e.toml:7: paths[1].frames"));
+}
+
+TEST(ExperimentFile, TakesMethodsFromFilesBesideIt) {
+    const TemporaryFolder folder;
+    Method tuned = load_method("two_layers");
+    tuned.name = "two_tuned", tuned.ao.samples = 11;
+    folder.write("tuned/two.toml", print_method(tuned));
+    const std::string text = R"(planes = ["ao"]
+methods = ["one_layer", "tuned/two.toml", {name = "more", base = "tuned/two.toml", ao.blur.radius = 3},
+           {name = "curve", base = "two_tuned", sweep = {"ao.samples" = [6, 20]}}]
+[[scenes]]
+scene = "cornell"
+)";
+    const std::filesystem::path file = folder.path / "e.toml";
+    const auto parse_there = [&](const MethodFiles& kept) {
+        return parse_experiment(parse_config(text, file.string()), file, kept);
+    };
+    const Experiment experiment = parse_there({});
+    ASSERT_EQ(experiment.methods.size(), 5u);
+    EXPECT_EQ(experiment.methods[1].name, "two_tuned");
+    EXPECT_EQ(method_hash(experiment.methods[1]), method_hash(tuned));
+    EXPECT_EQ(experiment.methods[2].ao.samples, 11);
+    EXPECT_EQ(experiment.methods[2].ao.blur.radius, 3);
+    EXPECT_EQ(experiment.methods[3].name, "curve, ao.samples = 6");
+
+    // A record keeps their texts: the file may change, or go.
+    const MethodFiles kept = experiment.method_files;
+    ASSERT_EQ(kept.size(), 1u);
+    folder.write("tuned/two.toml", "name = \"two_tuned\"\nao.smaples = 3\n");
+    EXPECT_EQ(method_hash(parse_there(kept).methods[1]), method_hash(tuned));
+    EXPECT_THAT(message_of<ConfigError>([&] { parse_there({}); }),
+                AllOf(HasSubstr("tuned/two.toml:2: ao.smaples"), HasSubstr("'ao.samples'")));
+    std::filesystem::remove(folder.path / "tuned/two.toml");
+    EXPECT_EQ(method_hash(parse_there(kept).methods[2]), method_hash(experiment.methods[2]));
+    EXPECT_THAT(message_of<ConfigError>([&] { parse_there({}); }),
+                AllOf(HasSubstr("e.toml"), HasSubstr("no method file 'tuned/two.toml'"),
+                      HasSubstr((folder.path / "tuned/two.toml").string()), HasSubstr("plumbline tune")));
+}
+
+TEST(ExperimentFile, EveryOneThatIsShippedCanBeRead) {
+    int read = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(PLUMBLINE_SOURCE_DIR "/experiments")) {
+        const std::filesystem::path& file = entry.path();
+        if (file.extension() != ".toml" || file.stem().string().ends_with("thresholds")) continue;
+        SCOPED_TRACE(file);
+        EXPECT_NO_THROW({
+            const ConfigValue table = read_config(file);
+            if (kind_of(table, file) == ExperimentKind::comparison) parse_experiment(table, file);
+        });
+        ++read;
+    }
+    EXPECT_GE(read, 8);
 }
 
 TEST(ExperimentFile, AnUnknownPlaneIsAnErrorThatNamesTheNearest) {

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
+#include <set>
 #include <sstream>
 #include <tuple>
 #include <vector>
@@ -92,6 +93,10 @@ TEST_F(Run, WritesARowForEveryCellOfTheSceneThatWorks) {
     for (const auto& row : json["rows"]) {
         if (row.contains("oracle_layers")) continue;  // takes no time
         EXPECT_GT(row["milliseconds"]["median"], 0.0) << row.dump();
+        if (!row.contains("path_tracer_samples")) continue;
+        EXPECT_EQ(row["milliseconds"]["repetitions"], 2) << "timed as often as the methods";
+        EXPECT_LE(row["milliseconds"]["lower_quartile"], row["milliseconds"]["median"]);
+        EXPECT_LE(row["milliseconds"]["median"], row["milliseconds"]["upper_quartile"]);
     }
     for (const auto& row : json["rows"]) {
         const bool of_seeds = row.contains("parameters") && !row.contains("path");
@@ -151,16 +156,45 @@ TEST_F(Run, IsRepeatedBitForBitFromItsResults) {
     const ProgramRun again = run_plumbline({"run", record.string(), "--output", (folder_->path / "again").string(),
                                             "--cache-dir", (folder_->path / "another cache").string()});
     EXPECT_EQ(again.exit_code, 1) << "the scene that does not exist still does not\n" << again.output;
-    EXPECT_THAT(again.output, HasSubstr("26 of 26 rows have the recorded measures, bit for bit"));
+    EXPECT_THAT(again.output, HasSubstr("26 of 26 rows are as recorded, bit for bit"));
 
+    // One thing of a row each, but for one whose time alone is another.
     auto forged = results("first");
-    forged["rows"][0]["measures"]["mse"] = 0.125;
+    auto& rows = forged["rows"];
+    rows[0]["measures"]["mse"] = 0.125;
+    rows[1]["unbiased_mse"]["upper"] = 0.125;
+    rows[2]["regions"]["border"]["lower"] = 0.125;
+    rows[3]["seeds"]["unbiased_mse_lower"] = 0.125;
+    rows[4]["milliseconds"]["median"] = 0.125;
+    auto& of_path = rows[rows.size() - 1];
+    of_path["frames"][1]["flicker"] = 0.125;
+    rows[rows.size() - 2]["stability"]["flicker_upper"] = 0.125;
     std::ofstream(folder_->path / "forged.json") << forged;
     const ProgramRun apart =
         run_plumbline({"run", (folder_->path / "forged.json").string(), "--output", (folder_->path / "apart").string(),
                        "--cache-dir", (folder_->path / "cache").string()});
     EXPECT_EQ(apart.exit_code, 1);
-    EXPECT_THAT(apart.output, AllOf(HasSubstr("25 of 26 rows"), HasSubstr("mse was 0.125")));
+    EXPECT_THAT(apart.output,
+                AllOf(HasSubstr("20 of 26 rows"), HasSubstr("measures.mse was 0.125"),
+                      HasSubstr("unbiased_mse.upper was 0.125"), HasSubstr("border.lower was 0.125"),
+                      HasSubstr("seeds.unbiased_mse_lower was 0.125"), HasSubstr("frames.1.flicker was 0.125"),
+                      HasSubstr("stability.flicker_upper was 0.125")));
+}
+
+// Gives every kept cell of a view times that no clock would tell, so that what is taken from a cell can be told from
+// what is measured again. Returns these times.
+std::vector<double> mark_cells(const std::filesystem::path& cells) {
+    std::vector<double> times;
+    for (const auto& entry : std::filesystem::directory_iterator(cells)) {
+        if (entry.path().extension() != ".exr") continue;
+        Frame frame = read_exr(entry.path());
+        nlohmann::json images = nlohmann::json::parse(frame.facts.at("cell.images"));
+        if (images[0]["view"] != "front") continue;  // a path's frames are used all or not at all
+        for (auto& image : images) image["timing"][0] = times.emplace_back(1e6 + static_cast<double>(times.size()));
+        frame.facts["cell.images"] = images.dump();
+        write_exr(entry.path(), frame);
+    }
+    return times;
 }
 
 TEST_F(Run, GoesOnWithTheCellsOfARunThatWasKilled) {
@@ -174,14 +208,50 @@ TEST_F(Run, GoesOnWithTheCellsOfARunThatWasKilled) {
     std::ignore = std::system(command.c_str());
     ASSERT_TRUE(std::filesystem::exists(out / "cells")) << "the run was not killed in its middle";
     EXPECT_FALSE(std::filesystem::exists(out / "results.json"));
-    const auto kept = *std::filesystem::directory_iterator(out / "cells");
-    const auto written = kept.last_write_time();
+    const std::vector<double> marked = mark_cells(out / "cells");
+    ASSERT_FALSE(marked.empty());
     run_it("killed");
     EXPECT_FALSE(std::filesystem::exists(out / "cells")) << "finished runs need no cells";
-    EXPECT_LT(written, std::filesystem::last_write_time(out / "results.json"));
     const auto a = results("first"), b = results("killed");
+    std::set<double> times;
+    for (const auto& row : b["rows"]) times.insert(row["milliseconds"]["median"].get<double>());
+    for (const double time : marked) EXPECT_TRUE(times.contains(time)) << "a kept cell was rendered and timed again";
     ASSERT_EQ(a["rows"].size(), b["rows"].size());
     for (std::size_t i = 0; i < a["rows"].size(); ++i) EXPECT_EQ(a["rows"][i]["measures"], b["rows"][i]["measures"]);
+}
+
+TEST_F(Run, WhatFailsOnTheWayDoesNotEndItAndIsListedWithItsCause) {
+    std::ofstream(folder_->path / "failing.toml") << R"(planes = ["ao", "indirect"]
+resolution = [32, 18]
+methods = ["one_layer", {name = "dark", base = "one_layer", ao.enabled = false}]
+path_tracer_samples = []
+[reference]
+samples = 4
+[timing]
+repetitions = 1
+[[scenes]]
+scene = "cornell"
+views = ["nowhere", "front"]
+paths = [{path = "astray", frames = 2}, {path = "strafe", frames = 2}]
+)";
+    const ProgramRun run =
+        run_plumbline({"run", (folder_->path / "failing.toml").string(), "--output",
+                       (folder_->path / "failing").string(), "--cache-dir", (folder_->path / "cache").string()});
+    EXPECT_EQ(run.exit_code, 1) << run.output;
+    const std::string last = run.output.substr(std::min(run.output.size(), run.output.find("cells failed:")));
+    // A view, a path, and a method that does not make the plane that is asked for: in views and along the path.
+    EXPECT_THAT(
+        last, AllOf(HasSubstr("cornell / nowhere / reference: "), HasSubstr("it has: front"), HasSubstr("cornell / astray: "),
+                    HasSubstr("cornell / ao / dark: "), HasSubstr("cornell / strafe / ao / dark: ")))
+        << run.output;
+    const auto json = results("failing");
+    EXPECT_EQ(json["failures"].size(), 4u);
+    std::set<std::string> rows;
+    for (const auto& row : json["rows"])
+        rows.insert(fmt::format("{} {} {}", row.value("path", row["view"].get<std::string>()),
+                                row["plane"].get<std::string>(), row["method"].get<std::string>()));
+    EXPECT_THAT(rows, testing::ElementsAre("front ao one_layer", "front indirect dark", "front indirect one_layer",
+                                           "strafe ao one_layer", "strafe indirect dark", "strafe indirect one_layer"));
 }
 
 TEST_F(Run, WritesFramesPicturesAndThePage) {
@@ -192,6 +262,8 @@ TEST_F(Run, WritesFramesPicturesAndThePage) {
     EXPECT_TRUE(std::filesystem::exists(out / "pictures/cornell.front.ao.two_layers.error.png"));
     const std::string page = text_of(out / "index.html");
     EXPECT_THAT(page, AllOf(HasSubstr("A thumbnail"), HasSubstr("no_such_scene")));
+    EXPECT_THAT(text_of(out / "headline.md"), AllOf(HasSubstr("|  | ao: 1 view | ao: 1 path |"),
+                                                    HasSubstr("| in practice, two_layers over one_layer: RMSE |")));
     // The values of every truth's and method's picture are within the page, the last with an element that is not empty.
     std::ptrdiff_t planes = 0;
     for (const auto& entry : std::filesystem::directory_iterator(out / "pictures"))
