@@ -182,11 +182,6 @@ std::string rows_there(const Threshold& threshold, const std::vector<ResultRow>&
 
 }  // namespace
 
-std::string cell_name(const ResultRow& row) {
-    return fmt::format("{} / {} / {}{} / {}", row.scene, row.place(), row.plane,
-                       row.truth.empty() ? "" : fmt::format(" ({})", row.truth), row.method);
-}
-
 ThresholdValue value_of(const Threshold& threshold, const std::vector<ResultRow>& rows,
                         const std::vector<CostRatio>& costs) {
     const bool of_workload = threshold.kind == ThresholdKind::cost && threshold.relative_to.empty();

@@ -33,7 +33,4 @@ struct ThresholdValue {
 ThresholdValue value_of(const Threshold& threshold, const std::vector<ResultRow>& rows,
                         const std::vector<CostRatio>& costs);
 
-// "clutter / shelf / ao / two_layers"
-std::string cell_name(const ResultRow& row);
-
 }  // namespace plumb

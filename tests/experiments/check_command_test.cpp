@@ -125,8 +125,9 @@ TEST_F(CheckCommand, CalibratesWithReasonsKept) {
 TEST_F(CheckCommand, PassesItsOwnCalibration) {
     const ProgramRun run = check("check.toml", "passing");
     EXPECT_EQ(run.exit_code, 0) << run.output;
-    EXPECT_THAT(run.output, AllOf(HasSubstr("kept"), HasSubstr("Proof: 'hardly any obscurance' breaks 'obscurance'"),
-                                  HasSubstr("PASSED")));
+    EXPECT_THAT(run.output,
+                AllOf(HasSubstr("Disk: at most"), HasSubstr("kept"),
+                      HasSubstr("Proof: 'hardly any obscurance' breaks 'obscurance'"), HasSubstr("PASSED")));
     const nlohmann::json json = json_of("passing");
     EXPECT_EQ(json["thresholds"][0]["verdict"], "kept");
     EXPECT_EQ(json["thresholds"][0]["moved"], false);
