@@ -124,7 +124,8 @@ std::string sweep_text(const ConfigValue& value) {
 }
 
 // The methods that `sweep` makes of a method's table.
-void add_sweep(const ConfigReader& reader, const ConfigValue& table, MethodList& known, MethodSelection& selection) {
+void add_sweep(const ConfigReader& reader, const ConfigValue& table, const std::vector<std::string>& planes,
+               MethodList& known, MethodSelection& selection) {
     const auto fail = [&](int line, std::string_view message) {
         throw ConfigError(fmt::format("{}:{}: methods.sweep: {}", reader.source(), line, message));
     };
@@ -143,9 +144,9 @@ void add_sweep(const ConfigReader& reader, const ConfigValue& table, MethodList&
     for (const ConfigValue& value : *values) {
         const std::string text = sweep_text(value);
         if (text.empty()) fail(value.line, fmt::format("'{}' must hold numbers, not {}", parameter, value.type_name()));
-        Method method = parse_method(plain, reader.source(), known);
+        Method method = parse_method(plain, reader.source(), known, &planes);
         const std::string curve = method.name;
-        set_method_parameter(method, fmt::format("{}={}", parameter, text));
+        set_method_parameter(method, fmt::format("{}={}", parameter, text), &planes);
         method.name = fmt::format("{}, {} = {}", curve, parameter, text);
         selection.sweep_points[method.name] = {curve, parameter, std::stod(text)};
         known.push_back(method);
@@ -155,7 +156,7 @@ void add_sweep(const ConfigReader& reader, const ConfigValue& table, MethodList&
 
 }  // namespace
 
-MethodSelection read_methods(ConfigReader& reader, const MethodFiles& kept) {
+MethodSelection read_methods(ConfigReader& reader, const std::vector<std::string>& planes, const MethodFiles& kept) {
     const ConfigValue* tables = reader.value("methods");
     if (!tables) reader.fail("", "'methods' is missing: name at least one method");
     const auto* array = std::get_if<ConfigArray>(&tables->value);
@@ -169,7 +170,7 @@ MethodSelection read_methods(ConfigReader& reader, const MethodFiles& kept) {
         files.add_base(entry, known);
         const auto* members = std::get_if<ConfigMembers>(&entry.value);
         if (members && std::ranges::find(*members, "sweep", &ConfigMember::key) != members->end()) {
-            add_sweep(reader, entry, known, selection);
+            add_sweep(reader, entry, planes, known, selection);
             continue;
         }
         Method method;
@@ -186,7 +187,7 @@ MethodSelection read_methods(ConfigReader& reader, const MethodFiles& kept) {
             }
             method = *found;
         } else {
-            method = parse_method(entry, reader.source(), known);
+            method = parse_method(entry, reader.source(), known, &planes);
             known.push_back(method);
         }
         methods.push_back(std::move(method));
@@ -243,7 +244,7 @@ Experiment parse_experiment(const ConfigValue& table, const std::filesystem::pat
         if (!names.insert(scene.scene).second) reader.fail("scenes", fmt::format("'{}' is there twice", scene.scene));
     }
     experiment.oracle_layers = reader.integers("oracle", {}, 0, 16);
-    MethodSelection selection = read_methods(reader, kept);
+    MethodSelection selection = read_methods(reader, experiment.planes, kept);
     experiment.methods = std::move(selection.methods);
     experiment.sweep_points = std::move(selection.sweep_points);
     experiment.method_files = std::move(selection.files);

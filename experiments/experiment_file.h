@@ -106,8 +106,10 @@ struct MethodSelection {
 
 // The key `methods`: names of methods, method files (method_files.h; those in `kept` as they were), or tables. A table
 // with `sweep = { "ao.samples" = [6, 20, 50] }` makes one method per value, named "NAME, ao.samples = 6"...; NAME
-// itself is then no method. Throws ConfigError.
-MethodSelection read_methods(ConfigReader& reader, const MethodFiles& kept = {});
+// itself is then no method. Throws ConfigError, also for parameters that have no effect on `planes`, which the
+// experiment asks for.
+MethodSelection read_methods(ConfigReader& reader, const std::vector<std::string>& planes,
+                             const MethodFiles& kept = {});
 
 // Throws ConfigError with file and line. `kept`: texts of method files that are taken instead of those on the disk.
 Experiment parse_experiment(const ConfigValue& table, const std::filesystem::path& file, const MethodFiles& kept = {});

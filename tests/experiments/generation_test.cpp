@@ -104,6 +104,19 @@ TEST(Generation, PeelAndDelayAreExactAndTheOthersAreWhereNothingMoves) {
     EXPECT_THAT(print_generation_table(results), HasSubstr("reproject"));
 }
 
+TEST(Generation, AWalkThatFailsDoesNotEndTheOthers) {
+    std::string text = with_methods();
+    text.replace(text.find("\"clutter\""), 9, "\"no_such_scene\"");
+    GenerationExperiment experiment = parse_generation(parse_config(text, "walks.toml"), "walks.toml");
+    experiment.width = 32, experiment.height = 18, experiment.frames = 2;
+    const GenerationResults results = run_generation(experiment, SceneFinder({}), {});
+    EXPECT_EQ(results.rows.size(), 20u) << "four walks by five methods";
+    for (const GenerationRow& row : results.rows) EXPECT_NE(row.walk, "still");
+    ASSERT_EQ(results.failures.size(), 1u);
+    EXPECT_EQ(results.failures[0].cell, "still");
+    EXPECT_THAT(results.failures[0].message, HasSubstr("no_such_scene"));
+}
+
 TEST(Generation, MethodsThatHaveNoSecondLayerAreRefused) {
     std::string text(walks);
     text += "[[methods]]\nname = \"one\"\nbase = \"one_layer\"\n";
