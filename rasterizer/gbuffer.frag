@@ -37,7 +37,7 @@ layout(location = WRITE_ROUGHNESS) out float roughness;
 layout(location = WRITE_EMISSION) out vec3 emission;
 #endif
 #ifdef WRITE_DISPLACEMENT
-layout(location = WRITE_DISPLACEMENT) out vec3 displacement;
+layout(location = WRITE_DISPLACEMENT) out vec4 displacement;
 #endif
 #ifdef WRITE_POSITION
 layout(location = WRITE_POSITION) out vec3 camera_position;
@@ -77,6 +77,16 @@ vec3 left_by_specular(SpecularSurface surface, vec3 n) {
     float cosine = max(dot(lobe_normal(camera_space_direction(n), to_viewer), to_viewer), 0.0);
     vec2 share = specular_split(cosine, ggx_alpha(surface.roughness));
     return 1.0 - (share.x * surface.f0 + share.y * surface.f90);
+}
+#endif
+
+#if defined(WRITE_DISPLACEMENT) && defined(FOLLOW_INSTANCES)
+// Where the normal pointed in the frame before, as reprojection.glsl reads it; 0 where it points there still.
+float previous_normal_code(vec3 n) {
+    if (previous_normal_from_normal[0].w == 0.0) return 0.0;
+    mat3 turn = mat3(previous_normal_from_normal[0].xyz, previous_normal_from_normal[1].xyz,
+                     previous_normal_from_normal[2].xyz);
+    return code_of_normal(normalize(turn * n));
 }
 #endif
 
@@ -138,9 +148,9 @@ void main() {
 #endif
 #ifdef WRITE_DISPLACEMENT
 #ifdef FOLLOW_INSTANCES
-    displacement = vertex.displacement;
+    displacement = vec4(vertex.displacement, previous_normal_code(normalize(vertex.world_normal)));
 #else
-    displacement = vec3(0.0);
+    displacement = vec4(0.0);
 #endif
 #endif
 #ifdef WRITE_POSITION

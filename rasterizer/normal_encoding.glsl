@@ -14,7 +14,6 @@
 // Zero, which a texture holds where nothing is, stays finite.
 vec3 unit(vec3 v) { return v * inversesqrt(max(dot(v, v), 1e-20)); }
 
-#if NORMAL_ENCODING == OCTAHEDRAL
 vec2 encode_normal(vec3 n) {
     vec2 p = n.xy / (abs(n.x) + abs(n.y) + abs(n.z));
     if (n.z < 0.0) p = (1.0 - abs(p.yx)) * vec2(p.x >= 0.0 ? 1.0 : -1.0, p.y >= 0.0 ? 1.0 : -1.0);
@@ -28,7 +27,18 @@ vec3 decode_normal(vec2 encoded) {
     n.xy += vec2(n.x >= 0.0 ? -fold : fold, n.y >= 0.0 ? -fold : fold);
     return normalize(n);
 }
-#endif
+
+// The same as one number for a 32-bit float channel, 15 bits for each coordinate. Codes are bit patterns of ordinary
+// positive numbers (no zero, no denormal, no infinity), which every OpenGL stores as they are.
+float code_of_normal(vec3 n) {
+    uvec2 steps = uvec2(encode_normal(n) * 32767.0 + 0.5);
+    return uintBitsToFloat((steps.y << 15 | steps.x) + 0x00800000u);
+}
+
+vec3 normal_of_code(float code) {
+    uint bits = floatBitsToUint(code) - 0x00800000u;
+    return decode_normal(vec2(bits & 32767u, bits >> 15) / 32767.0);
+}
 
 // The texel of the plane `normal` that keeps the world-space unit vector n.
 vec4 texel_of_normal(vec3 n) {

@@ -2,6 +2,7 @@
 // moving instances have in common. reprojection.h is the other half.
 //
 // Define: DISPLACEMENT_UNIT, the texture unit of the plane `displacement`; without it no instance moves.
+#include "normal_encoding.glsl"
 #include "view.glsl"
 
 #ifdef DISPLACEMENT_UNIT
@@ -28,4 +29,13 @@ PreviousPlace previous_place(ivec2 pixel, int layer, float depth) {
     place.pixel = previous_pixel_of(place.point);
     place.in_front = place.point.z < 0.0;
     return place;
+}
+
+// Where the normal of the surface there pointed, `normal` being that of now; world space, either sign.
+vec3 previous_normal(ivec2 pixel, int layer, vec3 normal) {
+#ifdef DISPLACEMENT_UNIT
+    float code = texelFetch(displacement_plane, ivec3(pixel, layer), 0).w;
+    if (code != 0.0) return normal_of_code(code);
+#endif
+    return normal;
 }

@@ -10,4 +10,7 @@ layout(std140, binding = 1) uniform InstanceBlock {
     float dielectric_reflectance;
     mat4 previous_world_from_object;  // in the frame before
     mat4 next_world_from_object;      // in the frame to come
+    // Takes normals of now to where they pointed in the frame before, in the columns' xyz. w of the first: 1 where the
+    // instance has turned or changed its shape since, else 0.
+    vec4 previous_normal_from_normal[3];
 };

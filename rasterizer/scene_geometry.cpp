@@ -28,8 +28,9 @@ struct InstanceBlock {
     float dielectric_reflectance;
     glm::mat4 previous_world_from_object;
     glm::mat4 next_world_from_object;
+    glm::vec4 previous_normal_from_normal[3];  // see there
 };
-static_assert(sizeof(InstanceBlock) == 288);
+static_assert(sizeof(InstanceBlock) == 336);
 constexpr GLuint instance_binding = 1;
 
 struct MeshRange {
@@ -93,6 +94,12 @@ InstanceBlock instance_block(const Material& material, const glm::mat4& now, con
     block.dielectric_reflectance = material.dielectric_reflectance;
     block.previous_world_from_object = previous;
     block.next_world_from_object = next;
+    if (glm::mat3(previous) != glm::mat3(now)) {
+        const glm::dmat3 before(glm::transpose(glm::inverse(glm::dmat3(glm::mat3(previous)))));
+        const glm::mat3 turn(before * glm::transpose(glm::dmat3(glm::mat3(now))));
+        for (int column = 0; column < 3; ++column)
+            block.previous_normal_from_normal[column] = glm::vec4(turn[column], column == 0 ? 1.0f : 0.0f);
+    }
     return block;
 }
 

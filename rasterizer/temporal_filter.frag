@@ -53,8 +53,8 @@ void main() {
     if (!place.in_front || any(lessThan(place.pixel, vec2(-1.0))) || any(greaterThan(place.pixel, view_size + 1.0))) {
         return;
     }
-    vec3 normal = camera_space_direction(normal_of_texel(texelFetch(normal_plane, ivec3(pixel, LAYER), 0)));
-    normal = mat3(previous_camera_from_camera) * normal;
+    vec3 normal = normal_of_texel(texelFetch(normal_plane, ivec3(pixel, LAYER), 0));
+    normal = mat3(previous_camera_from_camera) * camera_space_direction(previous_normal(pixel, LAYER, normal));
 
     vec2 corner = floor(place.pixel - 0.5);
     vec2 fraction = place.pixel - 0.5 - corner;

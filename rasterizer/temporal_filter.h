@@ -7,9 +7,9 @@
 //     w_i = alpha b_i (1 - smoothstep(reject_from, reject_to, d_i))
 //
 // d_i is how far, along the ray through pixel i, the surface that the frame before had there lies from the plane
-// through X (where X was then) with X's normal; the nearer one of both layers where `layers` is 2. Metres. A plain
-// distance of points would reject far and slanted surfaces for the half pixel that the grid is off, as the sources do.
-// Turning objects take their normals along only as far as the camera turns.
+// through X (where X was then) with the normal that X had then; the nearer one of both layers where `layers` is 2.
+// Metres. A plain distance of points would reject far and slanted surfaces for the half pixel that the grid is off, as
+// the sources do.
 //   Sources: alpha and the rule "within 1 cm of either layer": Mara et al. 2016, "Deep G-Buffers for Stable Global
 //   Illumination Approximation" (alpha 0.85; 0.95 and more lags; reject_from = reject_to = 0.01, layers = 2); the soft
 //   limits 0.05 and 0.07 m, one layer: the temporal filter that its authors ship with G3D (alpha 0.92).

@@ -6,7 +6,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include <glm/glm.hpp>
 
@@ -35,11 +38,23 @@ inline glm::dvec3 ray_through(const View& view, double x, double y) {
 
 inline glm::dvec3 eye_of(const View& view) { return glm::dvec3(view.camera().position()); }
 
-// One frame, with the view that it was rendered with.
+// One frame, with the view that it was rendered with, and how each instance that moves has moved since the frame before:
+// matrices that take world space of now to world space of then.
 struct RenderedFrame {
     View view;
     Frame planes;
+    std::vector<glm::dmat4> before_from_now = {};
 };
+
+// Of the instances of `scene` between two moments.
+inline std::vector<glm::dmat4> motions_between(const Scene& scene, const Moment& now, const Moment& before) {
+    std::vector<glm::dmat4> motions;
+    for (const Instance& instance : scene.instances) {
+        if (instance.moves())
+            motions.push_back(glm::dmat4(before.pose(instance)) * glm::inverse(glm::dmat4(now.pose(instance))));
+    }
+    return motions;
+}
 
 inline glm::dvec3 vector_of(const Image& image, int x, int y) {
     return {image.at(x, y, 0), image.at(x, y, 1), image.at(x, y, 2)};
@@ -50,33 +65,52 @@ struct SurfacePoint {
     glm::dvec3 now, before;  // world space
 };
 
-// None where nothing is seen. `displacement` is in the camera space of now.
-inline std::optional<SurfacePoint> surface_point(const RenderedFrame& frame, int x, int y) {
-    const double depth = frame.planes.plane("depth").at(x, y);
+// None where nothing is seen. `displacement` is in the camera space of now; `prefix` is that of the layer's planes.
+inline std::optional<SurfacePoint> surface_point(const RenderedFrame& frame, int x, int y,
+                                                 const std::string& prefix = "") {
+    const double depth = frame.planes.plane(prefix + "depth").at(x, y);
     if (std::isinf(depth)) return {};
     SurfacePoint point;
     point.now = eye_of(frame.view) + depth * ray_through(frame.view, x + 0.5, y + 0.5);
     point.before = point.now;
-    if (frame.planes.has("displacement")) {
-        point.before +=
-            glm::dmat3(frame.view.camera().world_from_camera) * vector_of(frame.planes.plane("displacement"), x, y);
+    if (frame.planes.has(prefix + "displacement")) {
+        point.before += glm::dmat3(frame.view.camera().world_from_camera) *
+                        vector_of(frame.planes.plane(prefix + "displacement"), x, y);
     }
     return point;
+}
+
+// Where the normal of a surface point was pointing in the frame before: turned as the instance that the point belongs to
+// has turned, which is the one whose motion brings it to where it was.
+inline glm::dvec3 normal_before(const RenderedFrame& frame, const SurfacePoint& point, const glm::dvec3& normal) {
+    if (point.before == point.now) return normal;
+    glm::dvec3 found = normal;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const glm::dmat4& motion : frame.before_from_now) {
+        const double distance = glm::length(glm::dvec3(motion * glm::dvec4(point.now, 1.0)) - point.before);
+        if (distance >= nearest) continue;
+        nearest = distance;
+        found = glm::normalize(glm::transpose(glm::inverse(glm::dmat3(motion))) * normal);
+    }
+    return found;
 }
 
 struct Accumulated {
     double value = 0.0, weight = 0.0;
 };
 
-// What the filter makes of `this_frame` at a pixel, `history` being its result of the frame before.
+// What the filter makes of `this_frame` at a pixel, `history` being its result of the frame before; both of `layer`.
 inline Accumulated accumulate(const RenderedFrame& now, const RenderedFrame& before, const Image& this_frame,
-                              const Image& history, const TemporalFilterSettings& settings, int x, int y) {
+                              const Image& history, const TemporalFilterSettings& settings, int x, int y,
+                              int layer = 0) {
     Accumulated result{this_frame.at(x, y), 0.0};
-    const std::optional<SurfacePoint> point = surface_point(now, x, y);
+    const std::array<std::string, 2> prefixes{"", "layer2."};
+    const std::string& prefix = prefixes.at(static_cast<std::size_t>(layer));
+    const std::optional<SurfacePoint> point = surface_point(now, x, y, prefix);
     if (!point) return result;
     const glm::dvec3 place = seen_at(before.view, point->before);
     if (place.z <= 0.0) return result;
-    const glm::dvec3 normal = vector_of(now.planes.plane("normal"), x, y);
+    const glm::dvec3 normal = normal_before(now, *point, vector_of(now.planes.plane(prefix + "normal"), x, y));
     const glm::dvec3 from_eye = point->before - eye_of(before.view);
     const double left = std::floor(place.x - 0.5), top = std::floor(place.y - 0.5);
     for (const double column : {left, left + 1.0}) {
@@ -87,9 +121,11 @@ inline Accumulated accumulate(const RenderedFrame& now, const RenderedFrame& bef
             double expected = glm::dot(normal, from_eye) / glm::dot(normal, ray);
             if (!(expected > 0.5 * place.z && expected < 2.0 * place.z)) expected = place.z;
             double distance = std::numeric_limits<double>::infinity();
-            for (int layer = 0; layer < settings.layers; ++layer) {
-                const double depth = before.planes.plane(layer == 0 ? "depth" : "layer2.depth")
-                                         .at(static_cast<int>(column), static_cast<int>(row));
+            for (const std::string& shown : prefixes) {
+                // Of its own layer, or of both.
+                if (shown != prefix && settings.layers == 1) continue;
+                const double depth =
+                    before.planes.plane(shown + "depth").at(static_cast<int>(column), static_cast<int>(row));
                 distance = std::min(distance, std::abs(depth - expected) * glm::length(ray));
             }
             const double range = settings.reject_to - settings.reject_from, beyond = distance - settings.reject_from;
