@@ -96,7 +96,11 @@ private:
 
         void corners(std::uint32_t triangle, float time, TracedTriangle& corners) const;
         std::array<glm::vec3, 3> corner_normals(std::uint32_t triangle, float time) const;  // 0 where there are none
-        glm::vec2 uv(std::uint32_t triangle, float u, float v) const;
+        glm::vec2 uv(std::uint32_t triangle, float u, float v) const {
+            if (!uvs) return {0.0f, 0.0f};
+            const std::uint32_t* corners = triangles + 3 * static_cast<std::size_t>(triangle);
+            return (1.0f - u - v) * (*uvs)[corners[0]] + u * (*uvs)[corners[1]] + v * (*uvs)[corners[2]];
+        }
         SurfaceSample sample(const SurfaceHit& hit) const;
     };
 

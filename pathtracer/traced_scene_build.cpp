@@ -1,4 +1,4 @@
-// How a TracedScene is built; what is asked of it stands in traced_scene.cpp.
+// How a TracedScene is built; what it answers stands in traced_scene.cpp and traced_scene_surfaces.cpp.
 #include <algorithm>
 #include <array>
 #include <cstddef>
