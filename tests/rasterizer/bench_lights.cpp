@@ -36,7 +36,8 @@ View view_of(const Scene& scene, int height) { return View(scene.cameras.front()
 
 std::uint64_t count_surfaces(const LightRun& run) {
     std::uint64_t count = 0;
-    for (const float depth : run.image("depth", 1).values()) count += std::isinf(depth) ? 0 : 1;
+    const Image depths = run.image("depth", 1);
+    for (const float depth : depths.values()) count += std::isinf(depth) ? 0 : 1;
     return count;
 }
 
