@@ -89,6 +89,32 @@ Enclosure point_at_centre() {
             .direct = albedo * 2.0 / pi};
 }
 
+// A lamp away from the centre, at distances of 0.6 to 1.4, with all terms of an attenuation. At the angle t from its
+// side the sphere is at distance d, d^2 = 1 + a^2 - 2 a cos(t), and faces it at the cosine (1 - a cos(t)) / d.
+Enclosure attenuated_lamp() {
+    constexpr double aside = 0.4, intensity = 4.0;
+    constexpr Attenuation attenuation{0.5f, 0.6f, 0.8f};
+    const auto irradiance = [=](double cosine_t) {
+        const double d = std::sqrt(1.0 + aside * aside - 2.0 * aside * cosine_t);
+        return intensity * (1.0 - aside * cosine_t) / d /
+               (attenuation.constant + attenuation.linear * d + attenuation.quadratic * d * d);
+    };
+    // The mean over the sphere: caps between equal steps of the cosine have equal areas.
+    const double mean = 0.5 * closed_form::integrate(irradiance, -1.0, 1.0);
+    return {
+        .name = "AttenuatedLamp",
+        .build =
+            [=](Scene& scene, bool smooth) {
+                add_sphere(scene, smooth);
+                const glm::vec3 position(0.0f, 0.0f, static_cast<float>(aside));
+                scene.point_lights.push_back({"lamp", position, glm::vec3(static_cast<float>(intensity)), attenuation});
+            },
+        .indirect = albedo / pi * albedo * mean,
+        .per_bounce = albedo,
+        .direct_at = [=](const glm::dvec3& position) { return albedo / pi * irradiance(position.z); },
+        .uneven = true};
+}
+
 // The flux of a spot light: full within the inner angle, then the square of a ramp in the cosine, whose mean is 1/3.
 Enclosure spot_at_centre() {
     constexpr float inner = 0.4f, outer = 1.1f, intensity = 6.0f;
@@ -110,7 +136,7 @@ Enclosure spot_at_centre() {
                     return albedo / pi * intensity * t * t;
                 },
             .uneven = true,
-            .samples = 128};
+            .samples = 256};
 }
 
 Enclosure emissive_sphere() {
@@ -139,7 +165,7 @@ Enclosure emissive_half() {
             .per_bounce = albedo,
             .direct = albedo * 3.0 / 2.0,
             .uneven = true,
-            .samples = 128};
+            .samples = 224};
 }
 
 // A black glowing ball in the middle covers the share r^2 of what each point of the sphere sees, cosine-weighted.
@@ -155,7 +181,7 @@ Enclosure glowing_ball() {
             .indirect = albedo * (1.0 - share) * albedo * 20.0 * share,
             .per_bounce = albedo * (1.0 - share),
             .direct = albedo * 20.0 * share,
-            .samples = 384};
+            .samples = 640};
 }
 
 // Parallel light falls into a bowl, the lower half of the sphere: pi E arrives, spread over 2 pi square metres.
@@ -184,7 +210,7 @@ Enclosure broad_sun_in_bowl() {
             .indirect = albedo / pi * albedo * 4.0 * pi / (4.0 * pi),
             .per_bounce = albedo / 2.0,
             .uneven = true,
-            .samples = 768};
+            .samples = 1280};
 }
 
 // Of the sky each point of the bowl sees the half that the bowl leaves open.
@@ -231,6 +257,7 @@ struct Way {
     const char* name;
     std::function<void(ReferenceSettings&)> choose;
     bool with_smooth_normals = false;  // as well as with face normals
+    double times_power = 1.0;          // where it is noisier than the others
 };
 const std::vector<Way> ways = {
     {"Lights", [](auto& settings) { settings.emitter_sampling = EmitterSampling::lights; }},
@@ -242,12 +269,14 @@ const std::vector<Way> ways = {
      [](auto& settings) { settings.emitter_sampling = EmitterSampling::directions, settings.antialias = true; }},
     {"BothAntialiased",
      [](auto& settings) { settings.emitter_sampling = EmitterSampling::both, settings.antialias = true; }},
+    {"RandomPoints", [](auto& settings) { settings.points = SamplePoints::random; }, false, 5.0 / 3.0},
+    {"RouletteAfterOneBounce", [](auto& settings) { settings.roulette_after = 1; }},
 };
 
 const std::vector<Enclosure>& enclosures() {
-    static const std::vector<Enclosure> all = {point_at_centre(),   spot_at_centre(), emissive_sphere(),
-                                               emissive_half(),     glowing_ball(),   sun_in_bowl(),
-                                               broad_sun_in_bowl(), sky_over_bowl(),  image_over_bowl()};
+    static const std::vector<Enclosure> all = {
+        point_at_centre(), attenuated_lamp(), spot_at_centre(),    emissive_sphere(), emissive_half(),
+        glowing_ball(),    sun_in_bowl(),     broad_sun_in_bowl(), sky_over_bowl(),   image_over_bowl()};
     return all;
 }
 
@@ -259,8 +288,9 @@ TEST_P(EnclosingSphere, HasTheRadianceOfItsClosedForm) {
     // Looks down and outwards: sees the lower half only, and nothing that is inside.
     const View view = view_of({0.6f, -0.3f, 0.1f}, {1.0f, -0.6f, 0.3f}, 1.1f);
     // What a bowl gathers is too little for 1 %; 3 % is still what pbrt-v4 allows itself. The ways of sampling are
-    // compared with each other more sharply in estimators_agree_test.cpp.
-    constexpr double power = 0.03, power_of_second_bounce = 0.1;
+    // compared with each other more sharply in estimators_agree_test.cpp. Independent points have up to three times the
+    // variance: 5 %.
+    constexpr double power_of_first_bounce = 0.03, power_of_second_bounce = 0.1;
     for (const bool smooth : {false, true}) {
         Scene scene;
         enclosure.build(scene, smooth);
@@ -272,10 +302,11 @@ TEST_P(EnclosingSphere, HasTheRadianceOfItsClosedForm) {
                                          enclosure.samples, 2);
             way.choose(settings);
             const Frame frame = tracer.render(view, settings).frame;
+            const double power = way.times_power * power_of_first_bounce;
             for (const float value : frame.plane("emission").values()) ASSERT_EQ(value, enclosure.emission) << what;
             expect_mean(frame, "indirect.1", enclosure.indirect, what, error, power);
             expect_mean(frame, "indirect.2", enclosure.indirect * enclosure.per_bounce, what, error,
-                        power_of_second_bounce);
+                        way.times_power * power_of_second_bounce);
             if (enclosure.direct >= 0.0) {
                 expect_mean(frame, "direct", enclosure.direct, what, error, power);
                 expect_mean(frame, "total",

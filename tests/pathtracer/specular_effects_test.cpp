@@ -257,6 +257,7 @@ TEST(GlossyRoom, ThatAbsorbsNothingAddsOneEmissionPerBounce) {
                 PathTracer(scene).render(view_of({0.1f, 0.2f, 0.3f}, {1, -0.9f, -0.8f}, 1.0f, 8), settings).frame;
             const double bound = roughness == 0.0f ? 0.0 : SpecularAlbedo::error_bound;
             const std::string what = "roughness " + std::to_string(roughness) + ", " + name_of(strategy);
+            // The table's bound alone, taken at every bounce, comes near 1 %.
             expect_mean(frame, "total", 2.0 + bounces, what, bound * (bounces + 1) / 2.0, 0.02);
             // Of radiance 1 x's diffuse lobe reflects 1 - E, which is what `indirect.k` has for every k.
             double first = 0.0, last = 0.0;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <glm/glm.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
@@ -152,36 +153,54 @@ inline glm::vec3 colour_at(const Image& image, int x, int y) {
     return {image.at(x, y, 0), image.at(x, y, 1), image.at(x, y, 2)};
 }
 
-// The mean over the pixels of channel 0 of `plane` must be that of `expected` (a function of pixel x, y) within four
-// standard errors, which a right program misses once in 16 000 tests with other seeds, plus 2e-5 of the value for
-// float32.
+// The mean over the pixels of `plane` must be that of `expected` (a function of pixel x, y) within four standard
+// errors, which a right program misses once in 16 000 tests with other seeds, plus 2e-5 of the value for float32. Every
+// channel is looked at.
 //   `tolerance`: how far, of the expected value, a right answer may rightly lie apart, as a tessellation does.
-//   `power`: a bias of this much of the expected value must be visible, or the test would prove little.
+//   `power`: the very same data must be rejected once so much of the expected value is added to it or taken away, or
+//   the test would prove little.
+//   `colour`: by what each channel's expectation is multiplied.
 inline void expect_mean(const Frame& frame, const std::string& plane, const std::function<double(int, int)>& expected,
-                        const std::string& what = "", double tolerance = 0.0, double power = 0.01) {
+                        const std::string& what = "", double tolerance = 0.0, double power = 0.01,
+                        const glm::dvec3& colour = glm::dvec3(1.0)) {
     const Image& image = frame.plane(plane);
     const Image& variance = frame.plane("variance." + plane);
-    double sum = 0.0, expected_sum = 0.0, variance_sum = 0.0;
+    double expected_sum = 0.0;
+    glm::dvec3 sum(0.0), variance_sum(0.0);
     for (int y = 0; y < image.height(); ++y) {
         for (int x = 0; x < image.width(); ++x) {
-            sum += image.at(x, y);
             expected_sum += expected(x, y);
-            variance_sum += variance.at(x, y);
+            for (int c = 0; c < image.channels(); ++c) {
+                sum[c] += image.at(x, y, c);
+                variance_sum[c] += variance.at(x, y, c);
+            }
         }
     }
     const auto count = static_cast<double>(image.pixel_count());
-    const double mean = sum / count, expected_mean = expected_sum / count,
-                 standard_error = std::sqrt(variance_sum) / count;
-    EXPECT_NEAR(mean, expected_mean, 4.0 * standard_error + (2e-5 + tolerance) * std::abs(expected_mean))
-        << what << " plane " << plane << ", standard error " << standard_error;
-    EXPECT_LT(4.0 * standard_error, power * std::abs(expected_mean) + 1e-6)
-        << what << " plane " << plane << ": too noisy to prove anything";
+    for (int c = 0; c < image.channels(); ++c) {
+        const double mean = sum[c] / count, expected_mean = colour[c] * expected_sum / count,
+                     standard_error = std::sqrt(variance_sum[c]) / count;
+        const auto distance_beyond_chance = [&](double expectation) {
+            return std::abs(mean - expectation) - 4.0 * standard_error - (2e-5 + tolerance) * std::abs(expectation);
+        };
+        const std::string where = fmt::format("{} plane {}, channel {}, standard error {}, mean {} for {}", what, plane,
+                                              c, standard_error, mean, expected_mean);
+        EXPECT_LE(distance_beyond_chance(expected_mean), 0.0) << where;
+        if (expected_mean == 0.0) {
+            EXPECT_EQ(standard_error, 0.0) << where;
+            continue;
+        }
+        for (const double factor : {1.0 + power, 1.0 - power}) {
+            EXPECT_GT(distance_beyond_chance(factor * expected_mean), 0.0)
+                << where << ": would not see the expectation times " << factor;
+        }
+    }
 }
 
 inline void expect_mean(const Frame& frame, const std::string& plane, double expected, const std::string& what = "",
-                        double tolerance = 0.0, double power = 0.01) {
+                        double tolerance = 0.0, double power = 0.01, const glm::dvec3& colour = glm::dvec3(1.0)) {
     expect_mean(
-        frame, plane, [expected](int, int) { return expected; }, what, tolerance, power);
+        frame, plane, [expected](int, int) { return expected; }, what, tolerance, power, colour);
 }
 
 // Both frames hold the same planes with the same bits (and infinities where the other has them).
