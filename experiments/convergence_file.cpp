@@ -39,7 +39,7 @@ ConvergenceExperiment parse_convergence(const ConfigValue& table, const std::fil
             reader.fail("planes", fmt::format("no plane '{}' with noise{}", plane, name_hint(plane, noisy_planes)));
     }
     read_resolution(reader, experiment.width, experiment.height);
-    experiment.quantities.bounces = reader.integer("bounces", experiment.quantities.bounces, 1, 64);
+    experiment.quantities.bounces = reader.integer("bounces", experiment.quantities.bounces, 1, most_diffuse_bounces);
     read_falloff(reader, "ao_falloff", experiment.quantities.ao_falloff);
 
     experiment.samples = reader.integers("samples", experiment.samples, 2, 1 << 20);

@@ -25,7 +25,7 @@ const std::vector<std::string> comparable_planes = {
 
 Quantities read_quantities(ConfigReader& reader) {
     Quantities quantities;
-    quantities.bounces = reader.integer("bounces", quantities.bounces, 1, 64);
+    quantities.bounces = reader.integer("bounces", quantities.bounces, 1, most_diffuse_bounces);
     read_falloff(reader, "ao_falloff", quantities.ao_falloff);
     read_falloff(reader, "indirect_falloff", quantities.indirect_falloff);
     return quantities;
