@@ -37,6 +37,9 @@ double taps_of_radiosity(const Method& method) {
 
 double taps_of_blur(const BilateralBlurSettings& blur) { return 2.0 * (2 * blur.radius + 1); }
 
+// A copy, and a texel of each coarser level.
+double texels_of_chain(const Method&) { return 4.0 / 3.0; }
+
 // Of the colonnade: a sun and a lamp.
 double lights(const Method&) { return 2.0; }
 
@@ -60,19 +63,24 @@ void reflect_probe(Method& method) {
 }
 
 void nothing_else(Method&) {}
+void chain_all(Method& method) { method.radiosity.mip_normals_and_radiance = true; }
 
 const std::vector<PassCase> pass_cases{
     {"gbuffer", {"depth", "normal", "albedo"}},
     {"gbuffer.layer2", {"layer2.depth", "layer2.normal", "layer2.albedo"}},
     {"motion", {"motion"}},
-    // A copy, and a texel of each coarser level.
-    {"depth MIP chain", {"ao"}, nothing_else, [](const Method&) { return 4.0 / 3.0; }},
+    {"depth MIP chain", {"ao"}, nothing_else, texels_of_chain},
+    {"depth keys of 8 bits", {"ao"}, [](Method& method) { method.ao.blur.depth_key_bits = 8; }},
+    {"depth keys of 16 bits", {"ao"}, [](Method& method) { method.ao.blur.depth_key_bits = 16; }},
+    {"normal MIP chain", {"indirect"}, chain_all, texels_of_chain},
+    {"direct MIP chain", {"indirect"}, chain_all, texels_of_chain},
     {"ambient obscurance", {"ao"}, nothing_else, taps_of_obscurance},
     {"ambient obscurance blur",
      {"ao"},
      nothing_else,
      [](const Method& method) { return taps_of_blur(method.ao.blur); }},
     {"shadows", {"direct"}},
+    {"light volumes", {"direct"}, [](Method& method) { method.direct.local_lights = LocalLights::volume_stencil; }},
     {"direct", {"direct"}, nothing_else, lights},
     {"direct.layer2", {"layer2.direct"}, nothing_else, lights},
     {"radiosity", {"indirect"}, nothing_else, taps_of_radiosity},
