@@ -16,6 +16,7 @@
 #include "experiments/settling.h"
 #include "experiments/statistics.h"
 #include "metrics/comparison.h"
+#include "metrics/gbuffer_fidelity.h"
 #include "metrics/path_stability.h"
 #include "metrics/plane_series.h"
 
@@ -50,6 +51,7 @@ struct PathRun::Series {
     std::unique_ptr<Pipeline> pipeline;
     int gbuffer_bytes_per_pixel = 0;
     PlaneSeries errors;
+    std::vector<std::vector<std::pair<std::string, double>>> fidelity;  // frame by frame
     PathStability stability;
     std::vector<FrameMeasure> frames;
     std::vector<Image> images;
@@ -199,6 +201,7 @@ void PathRun::add(const PlaneImage& image, int frame, const Frame& truth, const 
     const Frame test = frame_of(image);
     FrameMeasure measure{path_.start + frame / path_.frames_per_second, no_value, no_value};
     const PlaneComparison whole = std::move(series.errors.add(test, truth, regions).front());
+    series.fidelity.push_back(fidelity_of(image, truth));
     if (whole.referenced) measure.rmse = std::sqrt(std::max(0.0, whole.referenced->mse));
     if (const std::optional<Flicker> flicker = series.stability.add(test, truth, nullptr, regions))
         measure.flicker = flicker->rms;
@@ -255,6 +258,7 @@ void PathRun::write_rows(RunResults& results) {
             if (const auto found = of_regions.find(region.region); found != of_regions.end())
                 region.stability = found->second;
         }
+        row.fidelity = fidelity_over_frames(series->fidelity);
         row.frames = series->frames;
         row.stability = series->stability.result();
         if (row.is_method()) row.timing = median_timing(series->timings);

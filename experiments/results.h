@@ -61,7 +61,7 @@ struct ResultRow {
     double data_range = 1.0;                                   // peak of PSNR, range of SSIM
     int reference_samples = 0;                                 // per pixel
     std::vector<RegionError> regions;
-    // Of planes of the G-buffer, of views: what metrics/gbuffer_fidelity.h says of that plane.
+    // Of planes of the G-buffer: what metrics/gbuffer_fidelity.h says of that plane.
     std::vector<std::pair<std::string, double>> fidelity;
     std::vector<FrameMeasure> frames;              // of a path
     std::optional<PathStabilityResult> stability;  // of a path

@@ -36,27 +36,6 @@ RegionError region_error(std::string region, std::size_t pixels, std::vector<std
     return result;
 }
 
-// How right a plane of the G-buffer is. Where the plane is not the depth itself, both sides are compared where the
-// truth holds a surface, as far as the truth has its depth; nothing for planes of light.
-std::vector<std::pair<std::string, double>> fidelity_of(const PlaneImage& image, const Frame& truth) {
-    const auto dot = image.plane.rfind('.');
-    const std::string layer = dot == std::string::npos ? "" : image.plane.substr(0, dot + 1);
-    const std::string name = image.plane.substr(layer.size()), depth = layer + "depth";
-    constexpr std::array<std::string_view, 4> names = {"depth", "normal", "albedo", "motion"};
-    if (std::ranges::find(names, name) == names.end() || !truth.has(depth)) return {};
-    Frame test(truth.width(), truth.height()), reference(truth.width(), truth.height());
-    test.set("depth", truth.plane(depth)), reference.set("depth", truth.plane(depth));
-    test.set(name, image.image), reference.set(name, truth.plane(image.plane));
-    auto measures = gbuffer_fidelity(test, reference).front().measures();
-    std::erase_if(measures, [&](const auto& measure) {
-        // Whether the test holds a surface its depth alone could tell.
-        return std::isnan(measure.second) || (name != "depth" && measure.first.starts_with("hit_agreement"));
-    });
-    if (name != "depth")
-        std::erase_if(measures, [](const auto& measure) { return measure.first.starts_with("depth_error"); });
-    return measures;
-}
-
 // What a method shows, seed after seed.
 void add_seeds(const PlaneImage& image, const Frame& reference, const std::vector<Region>& regions,
                ComparisonSettings settings, ResultRow& row) {
@@ -143,6 +122,25 @@ void add_error(const ReferencedError& error, ResultRow& row) {
     row.noise_mse = error.reference_noise_mse;
     row.measured = error.trustworthy;
     if (!row.measured) row.refusal = refusal_of(error);
+}
+
+std::vector<std::pair<std::string, double>> fidelity_of(const PlaneImage& image, const Frame& truth) {
+    const auto dot = image.plane.rfind('.');
+    const std::string layer = dot == std::string::npos ? "" : image.plane.substr(0, dot + 1);
+    const std::string name = image.plane.substr(layer.size()), depth = layer + "depth";
+    constexpr std::array<std::string_view, 4> names = {"depth", "normal", "albedo", "motion"};
+    if (std::ranges::find(names, name) == names.end() || !truth.has(depth)) return {};
+    Frame test(truth.width(), truth.height()), reference(truth.width(), truth.height());
+    test.set("depth", truth.plane(depth)), reference.set("depth", truth.plane(depth));
+    test.set(name, image.image), reference.set(name, truth.plane(image.plane));
+    auto measures = gbuffer_fidelity(test, reference).front().measures();
+    std::erase_if(measures, [&](const auto& measure) {
+        // Whether the test holds a surface its depth alone could tell.
+        return std::isnan(measure.second) || (name != "depth" && measure.first.starts_with("hit_agreement"));
+    });
+    if (name != "depth")
+        std::erase_if(measures, [](const auto& measure) { return measure.first.starts_with("depth_error"); });
+    return measures;
 }
 
 ResultRow measure_row(const PlaneImage& image, const Truth& truth, const std::vector<Region>& regions,

@@ -26,6 +26,10 @@ ComparisonSettings comparison_settings(const Experiment& experiment);
 ResultRow measure_row(const PlaneImage& image, const Truth& truth, const std::vector<Region>& regions,
                       const ComparisonSettings& settings);
 
+// How right a plane of the G-buffer is (metrics/gbuffer_fidelity.h). Where the plane is not the depth itself, both
+// sides are compared where the truth holds a surface, as far as the truth has its depth; empty for planes of light.
+std::vector<std::pair<std::string, double>> fidelity_of(const PlaneImage& image, const Frame& truth);
+
 // What a series of images says of a row, and of its regions.
 void add_series(std::vector<PlaneSeriesResult> results, ResultRow& row);
 

@@ -1,9 +1,7 @@
 #include "experiments/sequence_comparison.h"
 
 #include <algorithm>
-#include <cmath>
 
-#include "experiments/no_value.h"
 #include "metrics/gbuffer_fidelity.h"
 
 namespace plumb {
@@ -11,21 +9,6 @@ namespace {
 
 bool knows_motion(const Frame& reference) {
     return reference.has("motion") && reference.has("position") && reference.has("depth");
-}
-
-double mean(const std::vector<double>& values) {
-    double sum = 0.0, count = 0.0;
-    for (const double value : values) {
-        if (!std::isnan(value)) sum += value, count += 1.0;
-    }
-    return count > 0.0 ? sum / count : no_value;
-}
-
-// One measure of a G-buffer over all frames.
-double over_frames(const std::string& measure, const std::vector<double>& values) {
-    if (measure.ends_with("maximum")) return std::ranges::max(values);
-    if (measure.ends_with("_lower") || measure.ends_with("_upper")) return no_value;  // no mean of intervals is one
-    return mean(values);
 }
 
 void whole_images_first(std::vector<MeasuredThing>& things) {
@@ -116,18 +99,14 @@ std::vector<MeasuredThing> SequenceComparison::whole() const {
 }
 
 std::vector<MeasuredThing> SequenceComparison::layers_over_frames() const {
-    std::vector<MeasuredThing> layers;
-    std::map<std::string, std::map<std::string, std::vector<double>>> values;  // layer, measure
+    std::map<std::string, std::vector<std::vector<std::pair<std::string, double>>>> frames_of;  // by layer
     for (const MeasuredFrame& frame : frames_) {
         for (const MeasuredThing& thing : frame.things) {
-            if (errors_.contains(thing.name)) continue;
-            if (!values.contains(thing.name)) layers.push_back(thing);
-            for (const auto& [measure, value] : thing.measures) values[thing.name][measure].push_back(value);
+            if (!errors_.contains(thing.name)) frames_of[thing.name].push_back(thing.measures);
         }
     }
-    for (MeasuredThing& layer : layers) {
-        for (auto& [measure, value] : layer.measures) value = over_frames(measure, values[layer.name][measure]);
-    }
+    std::vector<MeasuredThing> layers;
+    for (const auto& [layer, frames] : frames_of) layers.push_back({layer, "", fidelity_over_frames(frames)});
     return layers;
 }
 

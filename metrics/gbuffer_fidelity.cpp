@@ -193,6 +193,33 @@ const std::vector<std::string>& fidelity_names() {
     return names;
 }
 
+std::vector<std::pair<std::string, double>> fidelity_over_frames(
+    const std::vector<std::vector<std::pair<std::string, double>>>& frames) {
+    std::vector<std::pair<std::string, double>> result;
+    std::vector<double> counts;  // of the frames that have the measure
+    for (const auto& frame : frames) {
+        for (const auto& [name, value] : frame) {
+            const auto known = std::ranges::find(result, name, &std::pair<std::string, double>::first);
+            const auto place = static_cast<std::size_t>(known - result.begin());
+            if (known == result.end()) result.emplace_back(name, 0.0), counts.push_back(0.0);
+            if (std::isnan(value)) continue;
+            double& so_far = result[place].second;
+            so_far = !name.ends_with("maximum") ? so_far + value
+                     : counts[place] > 0.0      ? std::max(so_far, value)
+                                                : value;
+            counts[place] += 1.0;
+        }
+    }
+    for (std::size_t i = 0; i < result.size(); ++i) {
+        auto& [name, value] = result[i];
+        if (counts[i] == 0.0 || name.ends_with("_lower") || name.ends_with("_upper"))
+            value = none;
+        else if (!name.ends_with("maximum"))
+            value /= counts[i];
+    }
+    return result;
+}
+
 bool has_gbuffer(const Frame& test, const Frame& reference) { return test.has("depth") && reference.has("depth"); }
 
 std::vector<LayerFidelity> gbuffer_fidelity(const Frame& test, const Frame& reference,

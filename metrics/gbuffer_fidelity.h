@@ -57,6 +57,11 @@ struct LayerFidelity {
 // The names that measures() uses, in its order.
 const std::vector<std::string>& fidelity_names();
 
+// Measures of several frames as one: of *_maximum the largest, of all others the mean of the frames that have it. Ends
+// of intervals are NaN: no mean of intervals is one.
+std::vector<std::pair<std::string, double>> fidelity_over_frames(
+    const std::vector<std::vector<std::pair<std::string, double>>>& frames);
+
 // True where both frames have a plane depth.
 bool has_gbuffer(const Frame& test, const Frame& reference);
 

@@ -123,5 +123,18 @@ TEST(GbufferFidelity, MeasuresHaveFixedNames) {
     EXPECT_THROW(gbuffer_fidelity(wrong, wrong), ImageError);
 }
 
+TEST(GbufferFidelity, OverFramesIsTheMeanAndTheLargestOfMaxima) {
+    const auto all =
+        fidelity_over_frames({{{"agreement", 0.5}, {"agreement_lower", 0.4}, {"depth_error_maximum", 0.25}},
+                              {{"agreement", 1.0}, {"agreement_lower", 0.9}, {"depth_error_maximum", NAN}},
+                              {{"depth_error_maximum", 0.75}, {"normal_angle_mean", 3.0}}});
+    ASSERT_EQ(all.size(), 4u);
+    EXPECT_EQ(all[0], std::pair(std::string("agreement"), 0.75));
+    EXPECT_TRUE(std::isnan(all[1].second)) << "no mean of intervals is one";
+    EXPECT_EQ(all[2], std::pair(std::string("depth_error_maximum"), 0.75));
+    EXPECT_EQ(all[3], std::pair(std::string("normal_angle_mean"), 3.0));
+    EXPECT_TRUE(fidelity_over_frames({}).empty());
+}
+
 }  // namespace
 }  // namespace plumb
