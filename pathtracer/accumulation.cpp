@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 
+#include <fmt/format.h>
 #include <glm/gtc/constants.hpp>
 
 #include "frames/parallel.h"
+#include "pathtracer/reference_error.h"
 
 namespace plumb {
 namespace {
@@ -35,7 +38,15 @@ Accumulation::Accumulation(int width, int height, const EstimationPlan& plan, bo
     irradiance_ = reserve(plan.irradiance, 3);
     reflection_ = reserve(plan.reflection, 3);
     channels_ = static_cast<std::size_t>(next);
-    sums_ = ZeroedArray<double>(channels_ * 2 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+    const std::size_t size = channels_ * 2 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+    try {
+        sums_ = ZeroedArray<double>(size);
+    } catch (const std::bad_alloc&) {
+        throw ReferenceError(fmt::format(
+            "the sums of {}x{} pixels over {} bounces need {:.1f} GiB, which this machine does not give; ask "
+            "for fewer bounces, planes or pixels",
+            width, height, bounces_, static_cast<double>(size * sizeof(double)) / 0x1p30));
+    }
     // 2^-32 of the light level: a sample of a thousandth of it is off by 1e-7 of itself, one as likely up as down. The
     // ambient visibility, at most 1, has a quantum of its own, however dim the scene.
     quantum_ = std::exp2(std::ceil(std::log2(light_level > 0.0 ? light_level : 1.0)) - 32.0);

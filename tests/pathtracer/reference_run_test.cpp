@@ -287,6 +287,17 @@ TEST(Reference, RefusesSenselessSettings) {
     EXPECT_THROW(tracer.render(view, settings_for({"ao"}, 2), {.threads = -1}), ReferenceError);
 }
 
+TEST(Reference, SaysHowMuchMemoryItWantsWhereThereIsNotAsMuch) {
+    int overcommit = 1;
+    std::ifstream("/proc/sys/vm/overcommit_memory") >> overcommit;
+    if (overcommit == 1) GTEST_SKIP() << "this system promises any amount of memory";
+    const Scene scene = make_cornell();
+    const View view = cornell_view(scene, 1 << 14, 1 << 14);
+    // 2 x 3 x 2048 numbers of 8 bytes, 2^28 times.
+    EXPECT_THAT([&] { PathTracer(scene).render(view, settings_for({"indirect"}, 2, 2048)); },
+                ThrowsMessage<ReferenceError>(testing::AllOf(HasSubstr("24576.0 GiB"), HasSubstr("fewer bounces"))));
+}
+
 TEST(PathTracerScene, RefusesIndicesThatPointNowhere) {
     const auto refuses = [](auto&& change, const char* message) {
         Scene scene;
