@@ -118,6 +118,16 @@ public:
         return measurements->failures.empty() ? exit_fine : exit_failed;
     }
 
+    // Of all of them, those included that were measured before; truths that some share are counted for each.
+    DiskUse all_disk_use(const std::vector<std::string>& names) const {
+        DiskUse all;
+        for (const std::string& name : names) {
+            const DiskUse use = disk_use(load_reproduction(name), finder_, options_.frames, options_.quick);
+            all.cache += use.cache, all.output += use.output;
+        }
+        return all;
+    }
+
     void add_failure(const std::string& name, const std::exception& error) {
         fmt::print("failed: {}\n", error.what());
         failures_.push_back({name, error.what()});
@@ -179,6 +189,8 @@ int run(const ReproduceCommandOptions& options, const CommonOptions& common) {
     if (names.empty()) throw ConfigError("name what to reproduce, or ask for --all or --list");
     for (const std::string& name : names) load_reproduction(name);  // a misspelt last one is told before the first runs
     Reproducer reproducer(options, common);
+    if (names.size() > 1 && !options.present)
+        fmt::print("Disk, all together: {}\n", print_disk_use(reproducer.all_disk_use(names)));
     int code = exit_fine;
     const auto attempt = [&](const std::string& name, const auto& action) {
         try {

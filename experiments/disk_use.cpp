@@ -62,6 +62,10 @@ DiskUse disk_use(const Experiment& experiment, const SceneFinder& finder, bool w
     return use;
 }
 
+std::string print_disk_use(const DiskUse& use) {
+    return fmt::format("at most {} of references and {} of results", gigabytes(use.cache), gigabytes(use.output));
+}
+
 std::string describe_disk_use(const DiskUse& use, const std::filesystem::path& cache,
                               const std::filesystem::path& output) {
     const std::uintmax_t cache_free = free_space(cache), output_free = free_space(output);

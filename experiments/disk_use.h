@@ -19,6 +19,9 @@ struct DiskUse {
 // Loads the scenes whose views the experiment does not name; those that cannot be loaded count for nothing.
 DiskUse disk_use(const Experiment& experiment, const SceneFinder& finder, bool write_frames);
 
+// "at most 0.2 GB of references and 0.1 GB of results"
+std::string print_disk_use(const DiskUse& use);
+
 // One line, with the space that is free. Throws ImageError that says what to do where it does not suffice.
 std::string describe_disk_use(const DiskUse& use, const std::filesystem::path& cache,
                               const std::filesystem::path& output);

@@ -64,6 +64,7 @@ TEST(DiskUse, LooksAtTheSceneForViewsThatAreNotNamedAndLeavesOutWhatIsNotThere) 
 TEST(DiskUse, SaysWhatIsFreeAndRefusesWhatDoesNotFit) {
     const TemporaryFolder folder;
     const auto cache = folder.path / "not/made/yet", output = folder.path / "out";
+    EXPECT_EQ(print_disk_use({2'000'000'000, 30'000'000}), "at most 2 GB of references and 0.03 GB of results");
     EXPECT_THAT(
         describe_disk_use({2'000'000, 30'000'000}, cache, output),
         AllOf(HasSubstr("0.002 GB of references in '" + cache.string()), HasSubstr("0.03 GB in '"), HasSubstr("free")));

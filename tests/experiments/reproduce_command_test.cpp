@@ -79,7 +79,8 @@ protected:
 TEST_F(ReproduceCommand, WritesFiguresAsSvgPngAndCsvAndGoesOnBehindAnExperimentThatFails) {
     const ProgramRun run = reproduce({file("lost.toml"), file("trial.toml"), "--report", file("CLAIMS.md")});
     EXPECT_EQ(run.exit_code, 1) << run.output;
-    EXPECT_THAT(run.output, AllOf(HasSubstr("Disk: at most"), HasSubstr("1 failed:\n  " + file("lost.toml") + ": "),
+    EXPECT_THAT(run.output, AllOf(HasSubstr("Disk, all together: at most"), HasSubstr("Disk: at most"),
+                                  HasSubstr("1 failed:\n  " + file("lost.toml") + ": "),
                                   HasSubstr("all of its scenes are optional, and none is here")));
     EXPECT_GT(run.output.find("1 failed:"), run.output.find("1 claims: ")) << "what failed is listed at the end";
     for (const std::string figure : {"figure-1", "figure-2"}) {
@@ -87,7 +88,8 @@ TEST_F(ReproduceCommand, WritesFiguresAsSvgPngAndCsvAndGoesOnBehindAnExperimentT
         EXPECT_THAT(written(figure + ".png"), testing::StartsWith("\x89PNG"));
         EXPECT_THAT(written(figure + ".csv"), HasSubstr("two_layers,"));
     }
-    EXPECT_THAT(written("README.md"), AllOf(HasSubstr("![Times of each view](figure-1.png)"), HasSubstr("This was a trial run")));
+    EXPECT_THAT(written("README.md"),
+                AllOf(HasSubstr("![Times of each view](figure-1.png)"), HasSubstr("This was a trial run")));
     EXPECT_THAT(text_of(folder_.path / "CLAIMS.md"), HasSubstr("Two layers take longer."));
     EXPECT_THAT(written("run/results.json"), HasSubstr("Which errs less?")) << "the run can be repeated from it";
 }
