@@ -110,7 +110,7 @@ private:
         settings.bootstrap.resamples = 40;  // the seeds tell how sure it is, not the interval
         // Without the image's own halves: its noise is what is measured.
         const ReferencedError error =
-            referenced_error(image.plane(plane), reference.plane("half_a." + plane), reference.plane("half_b." + plane),
+            referenced_error(image.plane(plane), reference.plane(half_a_of(plane)), reference.plane(half_b_of(plane)),
                              experiment_.reference_samples, settings);
         return {samples, seed, error.mse, error.reference_noise_mse, false};
     }

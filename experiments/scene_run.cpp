@@ -13,6 +13,7 @@
 #include "experiments/oracle_images.h"
 #include "experiments/row_measurement.h"
 #include "experiments/settling.h"
+#include "metrics/referenced_error.h"
 #include "scenes/scene_error.h"
 
 namespace plumb {
@@ -212,8 +213,7 @@ void SceneRun::render_path_tracer_curve(const std::string& plane, RunResults& re
     settings.seed ^= independent_seed_mask;
     for (const std::string& view : views_) {
         if (!truths_.contains(view)) continue;
-        if (!truths_.at(view).full.frame.has(fmt::format("half_a.{}", plane)))
-            continue;  // a plane without noise has no curve
+        if (!has_halves(truths_.at(view).full.frame, plane)) continue;  // a plane without noise has no curve
         if (stopped()) return;
         show(measuring_progress(plane, 0.5), fmt::format("{}, {}: path tracer", view, plane));
         const std::string key =

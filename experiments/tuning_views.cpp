@@ -18,7 +18,7 @@ namespace plumb {
 namespace {
 
 TuningCost error_of(const Image& image, const Truth& truth, const std::string& plane, double most_noise) {
-    if (!truth.frame->has("half_a." + plane)) return {pixel_errors(image, truth.frame->plane(plane), 1.0).rmse, 0.0};
+    if (!has_halves(*truth.frame, plane)) return {pixel_errors(image, truth.frame->plane(plane), 1.0).rmse, 0.0};
     Frame test(image.width(), image.height());
     test.set(plane, image);
     ReferencedErrorSettings settings;
