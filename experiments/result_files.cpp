@@ -236,12 +236,9 @@ std::string print_csv(const RunResults& results) {
 std::string print_json(const RunResults& results) {
     Json json = run_json(results.command, results.started, results.seconds, results.system);
     json["interrupted"] = results.interrupted;
-    json["gl"] = {{"backend", results.gl_backend},
-                  {"vendor", results.gl_vendor},
-                  {"renderer", results.gl_renderer},
-                  {"version", results.gl_version},
-                  {"software", results.gl_software},
-                  {"timer", timer_description(results.gl_software)}};
+    json["gl"] = {{"backend", results.gl_backend},   {"vendor", results.gl_vendor},
+                  {"renderer", results.gl_renderer}, {"version", results.gl_version},
+                  {"software", results.gl_software}, {"timer", timer_description(results.gl_software)}};
     json["experiment"] = experiment_json(results.experiment);
     json["experiment_text"] = results.experiment_text;
     json["method_files"] = results.experiment.method_files;
