@@ -85,7 +85,7 @@ void add_benchmarks(const std::string& name) {
     const RenderCase roulette{
         "paths, 8 bounces, anti-aliased, roulette after 1", {"total"}, 8, true, Falloff::quadratic, 1};
     const std::vector<RenderCase> cases = {visibility_case(),
-                                           {"ao, quadratic", {"ao"}, 1, false, Falloff::quadratic, 0, 64},
+                                           {"ao, quadratic", {"ao"}, 1, false, Falloff::quadratic, 0, 256},
                                            {"direct", {"direct"}},
                                            {"indirect.1", {"indirect.1"}},
                                            {"ao, direct, indirect of 3 bounces", {"ao", "direct", "indirect"}, 3},

@@ -44,10 +44,10 @@ struct BenchmarkScene {
     TracedScene traced;
 };
 
-// Production path tracers' longest paths, and the plainest ambient visibility. Its samples are cheap: more of them, so
-// that what is done once for a view is as small a share as in use.
+// Production path tracers' longest paths, and the plainest ambient visibility. Its samples are cheap: as many of them
+// as references take, so that what is done once for a view is as small a share as in use.
 inline RenderCase path_case() { return {"paths, 8 bounces, anti-aliased", {"total"}, 8, true}; }
-inline RenderCase visibility_case() { return {"ao, hard", {"ao"}, 1, false, Falloff::hard, 0, 64}; }
+inline RenderCase visibility_case() { return {"ao, hard", {"ao"}, 1, false, Falloff::hard, 0, 256}; }
 
 // Cases `packets/`: the rays of those two, and primary rays, traced in all ways that Embree has, which is what the path
 // tracer's choice of calls rests on.

@@ -99,10 +99,13 @@ void PathIntegrator::draw_directions(const VertexBatch& vertices, int vertex, St
         const glm::vec3 direction = sample_cosine_hemisphere(normal, {x[i], y[i]});
         scattered.rays.direction.set(i, direction);
         scattered.density[i] = glm::dot(normal, direction) * glm::one_over_pi<float>();
-        scattered.weight.set(i, vertices.albedo.get(i));
     }
     passes.fill(0, count, 0);
-    if (leaves_diffusely) scattered.weight.fill(0, count, glm::vec3(1.0f));
+    if (leaves_diffusely) {
+        scattered.weight.fill(0, count, glm::vec3(1.0f));
+    } else {
+        for (int i = 0; i < whole_groups(count); ++i) scattered.weight.set(i, vertices.albedo.get(i));
+    }
     for (int i = 0; i < count && !leaves_diffusely && !vertices.all_plain; ++i) {
         if (vertices.is_plain[i]) continue;
         const SampleIndex index = vertices.samples.get(i);
@@ -143,7 +146,7 @@ void PathIntegrator::scatter(const VertexBatch& vertices, int vertex, Start star
         scattered.all_leave = true;
         for (int i = 0; i < end; ++i) {
             scattered.vertex[i] = i;
-            rays.set(i, vertices.origin(i, rise[i]), rays.direction.get(i), infinite_distance, vertices.time[i]);
+            rays.set_origin(i, vertices.origin(i, rise[i]), infinite_distance, vertices.time[i]);
         }
         rays.count = count;
         return;
@@ -341,8 +344,11 @@ void PathIntegrator::follow(const VertexBatch& starts, Start start, PathWorkspac
 void PathIntegrator::estimate(const VertexBatch& starts, PathWorkspace& workspace, BatchEstimate& estimate) const {
     estimate.ambient_visibility.fill(0, starts.count, 1.0f);
     estimate.radiance.resize(static_cast<std::size_t>(plan_.bounces) + 1);  // once for the estimate of a thread
-    for (VectorLanes& radiance : estimate.radiance) radiance.fill(0, starts.count, glm::vec3(0.0f));
-    estimate.reflection.fill(0, starts.count, glm::vec3(0.0f));
+    const bool gathers = plan_.direct || plan_.indirect || plan_.irradiance;
+    for (VectorLanes& radiance : estimate.radiance) {
+        if (gathers) radiance.fill(0, starts.count, glm::vec3(0.0f));
+    }
+    if (plan_.reflection) estimate.reflection.fill(0, starts.count, glm::vec3(0.0f));
     estimate.rays = 0;
 
     if (plan_.ao || plan_.irradiance) {

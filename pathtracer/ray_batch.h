@@ -19,7 +19,12 @@ struct RayBatch {
     Lanes<float> time;  // 0..1 over the scene's time span
 
     PLUMBLINE_INLINE void set(int lane, const glm::vec3& from, const glm::vec3& towards, float reach, float when) {
-        origin.set(lane, from), direction.set(lane, towards);
+        direction.set(lane, towards);
+        set_origin(lane, from, reach, when);
+    }
+    // All but the direction, which stands there already.
+    PLUMBLINE_INLINE void set_origin(int lane, const glm::vec3& from, float reach, float when) {
+        origin.set(lane, from);
         nearest[lane] = positive_distance, farthest[lane] = reach, time[lane] = when;
     }
     void add(const glm::vec3& from, const glm::vec3& towards, float reach, float when) {
