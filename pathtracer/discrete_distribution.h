@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -38,6 +39,23 @@ public:
             length -= half;
         }
         return static_cast<std::size_t>(first - cumulative_.data()) - 1;
+    }
+
+    // sample(2^-32 u) of the first `count` lanes. A few items are counted for all lanes together: bisection takes each
+    // lane by itself.
+    void sample(const Lanes<std::uint32_t>& u, int count, Lanes<std::uint32_t>& items) const {
+        constexpr std::size_t few = 8;
+        const std::size_t size = cumulative_.size() - 1;
+        const int end = whole_groups(count);
+        if (size > few) {
+            for (int i = 0; i < end; ++i) items[i] = static_cast<std::uint32_t>(sample(0x1p-32 * u[i]));
+            return;
+        }
+        items.fill(0, count, 0);
+        for (std::size_t item = 0; item + 1 < size; ++item) {
+            const double share_ends = cumulative_[item + 1];
+            for (int i = 0; i < end; ++i) items[i] += share_ends <= target(0x1p-32 * u[i]) ? 1 : 0;
+        }
     }
 
     // Where in the share of `item`, which sample(u) chose, u fell: in [0, 1). Without branches, for loops over lanes.

@@ -38,7 +38,7 @@ struct LightLanes {
     VectorLanes direction, shadow_ray, radiance;
     Lanes<float> rise, farthest, density;
 
-    void set(int lane, const LightSample& sample) {
+    PLUMBLINE_INLINE void set(int lane, const LightSample& sample) {
         direction.set(lane, sample.direction), shadow_ray.set(lane, sample.shadow_ray);
         radiance.set(lane, sample.radiance);
         rise[lane] = sample.rise, farthest[lane] = sample.farthest, density[lane] = sample.density;

@@ -228,6 +228,23 @@ LightSample LightTable::sample_without_extent(const LightReceiver& receiver, flo
     return kept;
 }
 
+void LightTable::sample_without_extent(const VertexBatch& receivers, const Lanes<float>& pick,
+                                       LightLanes& samples) const {
+    if (lights_without_extent_ != 1 || parallel_.empty()) {
+        for (int i = 0; i < receivers.count; ++i) {
+            samples.set(i, sample_without_extent(receivers.receiver(i), pick[i]));
+        }
+        return;
+    }
+    // One sun, which is the same from everywhere.
+    const LightSample sun = light_without_extent_from(glm::vec3(0.0f), 0);
+    for (int i = 0; i < whole_groups(receivers.count); ++i) {
+        samples.set(i, sun);
+        const bool is_behind = glm::dot(receivers.geometric_normal.get(i), sun.direction) <= 0.0f;
+        samples.rise[i] = is_behind ? receivers.bulge[i] : 0.0f;
+    }
+}
+
 LightSample LightTable::sample_emitter(const Emitter& emitter, const LightReceiver& receiver, glm::vec2 u) const {
     const TriangleSample chosen = sample_emitting_triangle(emitter.corners.a, emitter.corners.b, emitter.corners.c,
                                                            emitter.normal, emitter.area_over_probability, emitter.error,
@@ -247,6 +264,35 @@ LightSample LightTable::sample_emitter(const Emitter& emitter, const LightReceiv
     return sample;
 }
 
+// A few emitters are set one after the other in all lanes that chose them: looking up takes each lane by itself.
+PLUMBLINE_FOR_EACH_MACHINE
+void LightTable::look_up(const Lanes<std::uint32_t>& chosen, int count, EmitterLanes& lanes) const {
+    constexpr std::uint32_t few = 4;
+    const int end = whole_groups(count);
+    if (emitters_.size() > few) {
+        for (int i = 0; i < end; ++i) lanes.set(i, emitters_[chosen[i]]);
+        return;
+    }
+    for (std::uint32_t index = 0; index < emitters_.size(); ++index) {
+        const Emitter& emitter = emitters_[index];
+        const auto set = [&](Lanes<float>& lane, float value) {
+            if (index == 0) {
+                lane.fill(0, count, value);
+            } else {
+                for (int i = 0; i < end; ++i) lane[i] = chosen[i] == index ? value : lane[i];
+            }
+        };
+        const auto set_vector = [&](VectorLanes& lane, const glm::vec3& v) {
+            set(lane.x, v.x), set(lane.y, v.y), set(lane.z, v.z);
+        };
+        set_vector(lanes.a, emitter.corners.a), set_vector(lanes.b, emitter.corners.b);
+        set_vector(lanes.c, emitter.corners.c), set_vector(lanes.normal, emitter.normal);
+        set_vector(lanes.emission, emitter.emission);
+        set(lanes.area_over_probability, emitter.area_over_probability), set(lanes.error, emitter.error);
+        set(lanes.back_emits, emitter.two_sided ? 1.0f : 0.0f);
+    }
+}
+
 PLUMBLINE_FOR_EACH_MACHINE
 void LightTable::sample_extended(const VertexBatch& receivers, const Lanes<std::uint32_t>& x, const Lanes<float>& y,
                                  LightLanes& samples) const {
@@ -256,28 +302,21 @@ void LightTable::sample_extended(const VertexBatch& receivers, const Lanes<std::
         }
         return;
     }
-    VectorLanes a, b, c, normal, emission;
-    Lanes<float> area_over_probability, error, back_emits;
-    Lanes<std::uint32_t> chosen;
+    Lanes<std::uint32_t> chosen{};
     Lanes<float> within;
+    EmitterLanes from;
     const int end = whole_groups(receivers.count);
-    for (int i = 0; i < end; ++i) chosen[i] = static_cast<std::uint32_t>(extended_.sample(0x1p-32 * x[i]));
-    for (int i = 0; i < end; ++i) {
-        const Emitter& emitter = emitters_[chosen[i]];
-        a.set(i, emitter.corners.a), b.set(i, emitter.corners.b), c.set(i, emitter.corners.c);
-        normal.set(i, emitter.normal), emission.set(i, emitter.emission);
-        area_over_probability[i] = emitter.area_over_probability, error[i] = emitter.error;
-        back_emits[i] = emitter.two_sided ? 1.0f : 0.0f;
-    }
+    extended_.sample(x, receivers.count, chosen);
+    look_up(chosen, receivers.count, from);
     for (int i = 0; i < end; ++i) {
         within[i] = static_cast<float>(extended_.within(0x1p-32 * x[i], chosen[i]));
     }
     for (int i = 0; i < end; ++i) {
-        const TriangleSample at =
-            sample_emitting_triangle(a.get(i), b.get(i), c.get(i), normal.get(i), area_over_probability[i], error[i],
-                                     back_emits[i], receivers.ray_origin.get(i), {within[i], y[i]});
+        const TriangleSample at = sample_emitting_triangle(
+            from.a.get(i), from.b.get(i), from.c.get(i), from.normal.get(i), from.area_over_probability[i],
+            from.error[i], from.back_emits[i], receivers.ray_origin.get(i), {within[i], y[i]});
         samples.direction.set(i, at.direction), samples.shadow_ray.set(i, at.shadow_ray);
-        samples.radiance.set(i, at.inverse_density * emission.get(i));
+        samples.radiance.set(i, at.inverse_density * from.emission.get(i));
         samples.rise[i] = 0.0f, samples.farthest[i] = 1.0f;
         samples.density[i] = at.inverse_density > 0.0f ? 1.0f / at.inverse_density : 0.0f;
     }

@@ -54,6 +54,8 @@ public:
     std::size_t lights_without_extent() const { return lights_without_extent_; }
     LightSample light_without_extent(std::size_t index, const LightReceiver& receiver) const;
     LightSample sample_without_extent(const LightReceiver& receiver, float pick) const;
+    // The same for each vertex.
+    void sample_without_extent(const VertexBatch& receivers, const Lanes<float>& pick, LightLanes& samples) const;
 
 private:
     // What sampling a triangle needs, side by side.
@@ -66,6 +68,18 @@ private:
         std::uint32_t instance, triangle;
         bool two_sided, varies, moves;
     };
+    // The emitters that lanes chose, as far as plain ones differ.
+    struct EmitterLanes {
+        VectorLanes a, b, c, normal, emission;
+        Lanes<float> area_over_probability, error, back_emits;
+
+        void set(int lane, const Emitter& emitter) {
+            a.set(lane, emitter.corners.a), b.set(lane, emitter.corners.b), c.set(lane, emitter.corners.c);
+            normal.set(lane, emitter.normal), emission.set(lane, emitter.emission);
+            area_over_probability[lane] = emitter.area_over_probability, error[lane] = emitter.error;
+            back_emits[lane] = emitter.two_sided ? 1.0f : 0.0f;
+        }
+    };
     struct Sun {
         glm::vec3 axis, radiance;  // axis: towards the light
         float height, density, probability = 0.0f;
@@ -74,6 +88,7 @@ private:
     void find_emitters(std::vector<double>& powers);
     void find_suns(std::vector<double>& powers);
     Emitter moved(const Emitter& emitter, float time) const;
+    void look_up(const Lanes<std::uint32_t>& chosen, int count, EmitterLanes& lanes) const;
     // Of all that the receiver's origin sees, its face apart.
     LightSample sample_extended_from_origin(const LightReceiver& receiver, double x, float y) const;
     LightSample light_without_extent_from(const glm::vec3& origin, std::size_t index) const;

@@ -27,9 +27,7 @@ void PathIntegrator::next_event(const VertexBatch& vertices, int vertex, Start s
         Lanes<float> pick;
         sample_numbers(vertices.samples, vertices.count, path_dimension(vertex, specular_start, VertexUse::other_light),
                        pick);
-        for (int i = 0; i < vertices.count; ++i) {
-            lights.set(i, lights_.sample_without_extent(vertices.receiver(i), pick[i]));
-        }
+        lights_.sample_without_extent(vertices, pick, lights);
         connect(vertices, vertex, start, workspace, sum, rays);
     }
 }

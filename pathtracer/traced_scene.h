@@ -145,7 +145,7 @@ private:
     } table_;
     std::optional<SpecularAlbedo> specular_albedo_;  // where there are specular lobes
     bool has_textures_ = false, has_specular_lobes_ = false, has_transparency_ = false, has_delta_lobes_ = false,
-         anything_moves_ = false, anything_bulges_ = false;
+         anything_moves_ = false, has_normals_ = false, anything_bulges_ = false;
     RayRecorder* recorder_ = nullptr;
     mutable RTCScene layered_scene_ = nullptr;  // made when the first oracle asks
     mutable std::once_flag layered_scene_made_;

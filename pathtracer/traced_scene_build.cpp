@@ -83,8 +83,9 @@ TracedScene::TracedScene(const Scene& scene, const TimeSpan& span, const char* e
     reserve(span);
     for (std::uint32_t i = 0; i < parts_.size(); ++i) add(i, span);
     for (std::uint32_t i = 0; i < parts_.size(); ++i) attach(i);
+    has_normals_ = std::ranges::any_of(normals_, [](const glm::vec3& normal) { return normal != glm::vec3(0.0f); });
     if (anything_moves_) {
-        anything_bulges_ = std::ranges::any_of(normals_, [](const glm::vec3& n) { return n != glm::vec3(0.0f); });
+        anything_bulges_ = has_normals_;
     } else {
         make_records();
         anything_bulges_ = std::ranges::any_of(

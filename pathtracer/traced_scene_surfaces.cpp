@@ -153,26 +153,37 @@ void TracedScene::gather_corners(const HitBatch& hits, const MetRays& met, Corne
     constexpr int floats = sizeof(TriangleRecord) / sizeof(float);
     const int* first_triangle = table_.first_triangle.data();
     const float* records = &records_.data()->positions[0].x;
-    const bool bulges = anything_bulges_;
+    const int end = whole_groups(met.count);
     Lanes<int> record;
-    for (int i = 0; i < whole_groups(met.count); ++i) {
+    for (int i = 0; i < end; ++i) {
         const int ray = met.ray[i];
         record[i] = floats * (first_triangle[hits.instance[ray]] + static_cast<int>(hits.triangle[ray]));
         __builtin_prefetch(records + record[i]), __builtin_prefetch(records + record[i] + floats - 1);
     }
-    for (int i = 0; i < whole_groups(met.count); ++i) {
-        const int ray = met.ray[i];
-        const float u = hits.u[ray], v = hits.v[ray], w = 1.0f - u - v;
+    const auto vector = [](const float* from) { return glm::vec3(from[0], from[1], from[2]); };
+    for (int i = 0; i < end; ++i) {
         const float* from = records + record[i];
-        const auto at = [from](int first) { return glm::vec3(from[first], from[first + 1], from[first + 2]); };
-        const TracedTriangle triangle{at(0), at(3), at(6), {}, {}, {}};
-        corners.a.set(i, triangle.a), corners.b.set(i, triangle.b), corners.c.set(i, triangle.c);
-        const std::array<glm::vec3, 3> normals = {at(9), at(12), at(15)};
-        corners.normal_sum.set(i, interpolate(normals, u, v));
-        const Bulge bulge = bulges ? bulge_of(triangle, normals, u, v) : Bulge{0.0f, 0.0f};
+        corners.a.set(i, vector(from)), corners.b.set(i, vector(from + 3)), corners.c.set(i, vector(from + 6));
+    }
+    const auto normals = [&](int i) {
+        const float* from = records + record[i] + 9;
+        return std::array<glm::vec3, 3>{vector(from), vector(from + 3), vector(from + 6)};
+    };
+    if (!has_normals_) corners.normal_sum.fill(0, met.count, glm::vec3(0.0f));
+    for (int i = 0; i < end && has_normals_; ++i) {
+        corners.normal_sum.set(i, interpolate(normals(i), hits.u[met.ray[i]], hits.v[met.ray[i]]));
+    }
+    if (!anything_bulges_) corners.bulge_front.fill(0, met.count, 0.0f), corners.bulge_back.fill(0, met.count, 0.0f);
+    for (int i = 0; i < end && anything_bulges_; ++i) {
+        const TracedTriangle triangle{corners.a.get(i), corners.b.get(i), corners.c.get(i), {}, {}, {}};
+        const Bulge bulge = bulge_of(triangle, normals(i), hits.u[met.ray[i]], hits.v[met.ray[i]]);
         corners.bulge_front[i] = bulge.front, corners.bulge_back[i] = bulge.back;
-        corners.texture_u[i] = w * from[18] + u * from[20] + v * from[22];
-        corners.texture_v[i] = w * from[19] + u * from[21] + v * from[23];
+    }
+    for (int i = 0; i < end && has_textures_; ++i) {
+        const float u = hits.u[met.ray[i]], v = hits.v[met.ray[i]], w = 1.0f - u - v;
+        const float* from = records + record[i] + 18;
+        corners.texture_u[i] = w * from[0] + u * from[2] + v * from[4];
+        corners.texture_v[i] = w * from[1] + u * from[3] + v * from[5];
     }
 }
 
