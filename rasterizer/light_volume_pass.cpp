@@ -34,7 +34,7 @@ LightVolumePass::LightVolumePass(const PassResources& resources, int layer, bool
     : context_(resources.context),
       layer_(layer),
       uses_stencil_(resources.method.direct.local_lights == LocalLights::volume_stencil),
-      culled_face_(!uses_stencil_ && resources.method.direct.volume_faces == VolumeFaces::front ? GL_BACK : GL_FRONT),
+      faces_(uses_stencil_ ? VolumeFaces::back : resources.method.direct.volume_faces),
       lights_(resources, LightKinds::lamps),
       vertex_array_(context_),
       depth_(resources.planes.get("depth")),
@@ -135,9 +135,9 @@ void LightVolumePass::execute(const PassFrame& frame) {
     gl.BlendEquation(GL_FUNC_ADD);
     gl.BlendFunc(GL_ONE, GL_ONE);
     gl.Enable(GL_BLEND);
-    gl.Enable(GL_CULL_FACE);
+    if (faces_ != VolumeFaces::both) gl.Enable(GL_CULL_FACE);
     gl.FrontFace(GL_CCW);
-    gl.CullFace(culled_face_);
+    gl.CullFace(faces_ == VolumeFaces::front ? GL_BACK : GL_FRONT);
     gl.Enable(GL_DEPTH_CLAMP);  // a volume may reach through the near plane
     if (uses_stencil_) {
         draw_by_stencil(Frustum(frame.view.clip_from_camera() * frame.view.camera_from_world()));

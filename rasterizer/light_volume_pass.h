@@ -6,7 +6,7 @@
 //   LocalLights::volume: all volumes of a kind in one instanced draw, without a depth test. As seed of the idea, Meiri,
 //     "OGLdev", tutorial 36, which names its own two problems. First, VolumeFaces::front draws nothing, and the light
 //     is gone, where the camera stands inside the volume; VolumeFaces::back draws the far side, which is there from
-//     everywhere. (Drawing both would count the light twice outside.) Second, pixels are shaded whose surface lies
+//     everywhere; VolumeFaces::both, without culling, counts the light twice outside. Second, pixels are shaded whose surface lies
 //     before or behind the volume and only appears in front of it: wasted work, and light below the threshold that ends
 //     where the volume's outline happens to lie on the screen.
 //   LocalLights::volume_stencil: a pixel is lit only if its surface is inside the volume. Back faces behind the surface
@@ -61,7 +61,7 @@ private:
     GlContext& context_;
     int layer_;
     bool uses_stencil_;
-    GLenum culled_face_;
+    VolumeFaces faces_;  // that shade
     LightBuffers lights_;
     GlBuffer mesh_vertices_, mesh_indices_, instances_, fragment_counter_;
     GlVertexArray vertex_array_;

@@ -58,7 +58,7 @@ struct ShadowSettings {
 
 // How point and spot lights are shaded (light_volume_pass.h): every light at every pixel, or each within its volume.
 enum class LocalLights { fullscreen, volume, volume_stencil };
-enum class VolumeFaces { front, back };  // which side of a volume is drawn where there is no stencil
+enum class VolumeFaces { front, back, both };  // which side of a volume is drawn where there is no stencil
 // What gives the irradiance of the environment: spherical harmonics of order 2, or a cube (radiance_maps.h).
 enum class EnvironmentIrradiance { harmonics, cube };
 

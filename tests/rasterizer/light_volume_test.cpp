@@ -240,6 +240,7 @@ TEST_P(LightVolumeTest, FrontFacesLoseTheLightWhenTheCameraIsInsideAndBackFacesD
     EXPECT_GT(full, 4000);
     EXPECT_EQ(lit_with(LocalLights::volume, VolumeFaces::front), 0);
     EXPECT_EQ(lit_with(LocalLights::volume, VolumeFaces::back), full);
+    EXPECT_EQ(lit_with(LocalLights::volume, VolumeFaces::both), full);
     EXPECT_EQ(lit_with(LocalLights::volume_stencil, VolumeFaces::back), full);
 }
 
@@ -253,6 +254,27 @@ TEST_P(LightVolumeTest, FromOutsideFrontAndBackFacesGiveTheSameLight) {
     const Image front = render(context(), scene, corner_view(), {"direct"}, method).plane("direct");
     EXPECT_GT(lit_pixels(back), 300);
     EXPECT_TRUE(std::ranges::equal(back.values(), front.values()));
+}
+
+// Without culling, the tutorial says, light increases outside of the volume, where both faces shade, and is half of that
+// inside, where one does.
+TEST_P(LightVolumeTest, BothFacesDoubleTheLightFromOutsideAndNotFromInside) {
+    Scene scene = make_corner();
+    const auto lit_by = [&](VolumeFaces faces, float threshold) {
+        Method method = lamp_method(LocalLights::volume, threshold);
+        method.direct.volume_faces = faces;
+        return render(context(), scene, corner_view(), {"direct"}, method).plane("direct");
+    };
+    scene.point_lights.push_back({"lamp", {-1.0f, 0.6f, -1.0f}, {1.0f, 1.0f, 1.0f}});
+    constexpr float reaches_one_metre = 1.0f, reaches_the_camera = 1.0f / 256.0f;
+    const Image once = lit_by(VolumeFaces::back, reaches_one_metre);
+    const Image twice = lit_by(VolumeFaces::both, reaches_one_metre);
+    EXPECT_GT(lit_pixels(once), 300);
+    // A product of a power of two: exact.
+    EXPECT_TRUE(std::ranges::equal(once.values(), twice.values(), [](float a, float b) { return 2.0f * a == b; }));
+    const Image inside = lit_by(VolumeFaces::back, reaches_the_camera);
+    EXPECT_GT(lit_pixels(inside), 4000);
+    EXPECT_TRUE(std::ranges::equal(inside.values(), lit_by(VolumeFaces::both, reaches_the_camera).values()));
 }
 
 // The second problem: surfaces far behind the volume, or before it, are lit because it covers them on the screen.
