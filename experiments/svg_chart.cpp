@@ -41,6 +41,10 @@ struct Axis {
             if (greatest != 0.0) greatest += margin;
         }
     }
+    // As many times as long, to the greater side.
+    void leave_room_above(double factor) {
+        greatest = logarithmic ? least * std::pow(greatest / least, factor) : least + factor * (greatest - least);
+    }
     double place(double value) const {
         const double share =
             logarithmic ? std::log(value / least) / std::log(greatest / least) : (value - least) / (greatest - least);
@@ -102,6 +106,12 @@ public:
         y_.widen();
         x_.from = origin_x + left, x_.to = origin_x + panel_width - right;
         y_.from = origin_y + panel_height - bottom, y_.to = origin_y + top;
+        // Bars fill the panel from the foot on: where none of its corners is free, they leave room above them.
+        const LegendSize legend = legend_size();
+        if (std::ranges::any_of(chart.series, is_bars) && points_under(legend_corner(legend), legend) > 0) {
+            const double height = y_.from - y_.to;
+            y_.leave_room_above(height / std::max(0.3 * height, height - legend.height));
+        }
     }
 
     std::string draw() const {
@@ -192,8 +202,12 @@ private:
                         "font-size=\"9\"");
     }
 
+    double category_width() const {
+        return (x_.to - x_.from) / static_cast<double>(std::max<std::size_t>(1, chart_.categories.size()));
+    }
+
     std::string draw_bars(const ChartSeries& series, int index, int count) const {
-        const double room = (x_.to - x_.from) / static_cast<double>(std::max<std::size_t>(1, chart_.categories.size()));
+        const double room = category_width();
         const int places = chart_.is_waterfall ? 1 : count;
         const double width = 0.8 * room / places;
         std::string svg;
@@ -217,37 +231,53 @@ private:
         bool at_left, at_bottom;
     };
 
-    // Of the four, the one whose area the fewest points and bars lie in; the upper right one where it is as good.
-    Corner legend_corner(double width, double height) const {
-        constexpr std::array<Corner, 4> corners = {Corner{false, false}, {true, false}, {false, true}, {true, true}};
-        const auto covered = [&](const Corner& corner) {
-            int count = 0;
-            for (const ChartSeries& series : chart_.series) {
-                for (const ChartPoint& point : series.points) {
-                    if (!can_show(point)) continue;
-                    const double x = x_.place(point.x), y = y_.place(point.y);
-                    const bool beside = corner.at_left ? x > x_.from + width : x < x_.to - width;
-                    // A bar covers all from its end to its foot.
-                    const bool apart = corner.at_bottom ? y < y_.from - height && !is_bars(series) : y > y_.to + height;
-                    count += beside || apart ? 0 : 1;
-                }
-            }
-            return count;
-        };
-        return *std::ranges::min_element(corners, {}, covered);
-    }
+    struct LegendSize {
+        double width, height;
+        int lines;
+    };
 
-    std::string draw_legend() const {
+    LegendSize legend_size() const {
         std::size_t longest = 0;
         int lines = 0;
         for (const ChartSeries& series : chart_.series) {
             longest = std::max(longest, series.name.size());
             lines += series.name.empty() ? 0 : 1;
         }
-        const Corner corner =
-            legend_corner(31.0 + static_cast<double>(longest) * letter_width, 8.0 + lines * legend_line);
+        return {31.0 + static_cast<double>(longest) * letter_width, lines == 0 ? 0.0 : 8.0 + lines * legend_line,
+                lines};
+    }
+
+    int points_under(const Corner& corner, const LegendSize& legend) const {
+        int count = 0;
+        for (const ChartSeries& series : chart_.series) {
+            for (const ChartPoint& point : series.points) {
+                if (!can_show(point)) continue;
+                const double x = x_.place(point.x);
+                const double y = y_.place(is_bars(series) && has_error_bar(point) ? point.upper : point.y);
+                const double reach = is_bars(series) ? 0.4 * category_width() : 0.0;
+                const bool beside =
+                    corner.at_left ? x - reach > x_.from + legend.width : x + reach < x_.to - legend.width;
+                // A bar covers all from its end to its foot.
+                const bool apart =
+                    corner.at_bottom ? y < y_.from - legend.height && !is_bars(series) : y > y_.to + legend.height;
+                count += beside || apart ? 0 : 1;
+            }
+        }
+        return count;
+    }
+
+    // Of the four, the one whose area the fewest points and bars lie in; the upper right one where it is as good.
+    Corner legend_corner(const LegendSize& legend) const {
+        constexpr std::array<Corner, 4> corners = {Corner{false, false}, {true, false}, {false, true}, {true, true}};
+        return *std::ranges::min_element(corners, {},
+                                         [&](const Corner& corner) { return points_under(corner, legend); });
+    }
+
+    std::string draw_legend() const {
+        const LegendSize legend = legend_size();
+        const Corner corner = legend_corner(legend);
         const double side = corner.at_left ? 1.0 : -1.0, edge = corner.at_left ? x_.from : x_.to;
-        double y = corner.at_bottom ? y_.from - 8.0 - (lines - 1) * legend_line : y_.to + 16.0;
+        double y = corner.at_bottom ? y_.from - 8.0 - (legend.lines - 1) * legend_line : y_.to + 16.0;
         std::string svg;
         for (const ChartSeries& series : chart_.series) {
             if (series.name.empty()) continue;

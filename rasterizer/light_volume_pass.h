@@ -6,9 +6,9 @@
 //   LocalLights::volume: all volumes of a kind in one instanced draw, without a depth test. As seed of the idea, Meiri,
 //     "OGLdev", tutorial 36, which names its own two problems. First, VolumeFaces::front draws nothing, and the light
 //     is gone, where the camera stands inside the volume; VolumeFaces::back draws the far side, which is there from
-//     everywhere; VolumeFaces::both, without culling, counts the light twice outside. Second, pixels are shaded whose surface lies
-//     before or behind the volume and only appears in front of it: wasted work, and light below the threshold that ends
-//     where the volume's outline happens to lie on the screen.
+//     everywhere; VolumeFaces::both, without culling, counts the light twice outside. Second, pixels are shaded whose
+//     surface lies before or behind the volume and only appears in front of it: wasted work, and light below the
+//     threshold that ends where the volume's outline happens to lie on the screen.
 //   LocalLights::volume_stencil: a pixel is lit only if its surface is inside the volume. Back faces behind the surface
 //     count up in the stencil, front faces behind it down; what is left above zero is inside, also when the camera is,
 //     as faces nearer than it add nothing. Then the back faces shade where the stencil is not zero, and reset it. Two

@@ -256,8 +256,8 @@ TEST_P(LightVolumeTest, FromOutsideFrontAndBackFacesGiveTheSameLight) {
     EXPECT_TRUE(std::ranges::equal(back.values(), front.values()));
 }
 
-// Without culling, the tutorial says, light increases outside of the volume, where both faces shade, and is half of that
-// inside, where one does.
+// Without culling, the tutorial says, light increases outside of the volume, where both faces shade, and is half of
+// that inside, where one does.
 TEST_P(LightVolumeTest, BothFacesDoubleTheLightFromOutsideAndNotFromInside) {
     Scene scene = make_corner();
     const auto lit_by = [&](VolumeFaces faces, float threshold) {
