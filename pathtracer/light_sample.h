@@ -10,13 +10,16 @@ namespace plumb {
 // Where light arrives. What lies below the face but not below the horizon of the normal is seen from `bulge` above the
 // origin (SurfacePoint).
 struct LightReceiver {
-    glm::vec3 origin;  // of rays
-    glm::vec3 normal;  // of shading
+    glm::vec3 origin;       // of rays
+    glm::vec3 normal;       // of shading
+    glm::vec3 lobe_normal;  // about which a specular lobe stands (scenes/ggx.h); where there is none: `normal`
     glm::vec3 geometric_normal;
     float bulge = 0.0f;
     float time = now;
 
-    LightReceiver bulging() const { return {origin + bulge * normal, normal, geometric_normal, 0.0f, time}; }
+    LightReceiver bulging() const {
+        return {origin + bulge * normal, normal, lobe_normal, geometric_normal, 0.0f, time};
+    }
     bool sees_from_bulge(const glm::vec3& direction) const {
         return bulge > 0.0f && glm::dot(geometric_normal, direction) <= 0.0f;
     }

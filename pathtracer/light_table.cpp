@@ -14,27 +14,6 @@ namespace {
 
 constexpr std::uint32_t no_emitter = 0xffffffffu;
 
-// KHR_lights_punctual, as SpotLight says; equal angles make a hard edge.
-float spot_attenuation(const SpotLight& light, float cosine) {
-    const float outer = std::cos(light.outer_angle), inner = std::cos(light.inner_angle);
-    if (inner <= outer) return cosine >= outer ? 1.0f : 0.0f;
-    const float t = std::clamp((cosine - outer) / (inner - outer), 0.0f, 1.0f);
-    return t * t;
-}
-
-LightSample from_point(const glm::vec3& receiver, const glm::vec3& position, const Attenuation& attenuation) {
-    LightSample sample;
-    const glm::vec3 offset = position - receiver;
-    const float squared = glm::dot(offset, offset);
-    if (!(squared > 0.0f)) return sample;
-    const float distance = std::sqrt(squared);
-    sample.direction = offset / distance;
-    sample.shadow_ray = offset;
-    sample.farthest = 1.0f;
-    sample.radiance = glm::vec3(1.0f / attenuation.divisor(distance, squared));
-    return sample;
-}
-
 // A light that the receiver's bulge sees, told for the receiver.
 LightSample risen(const LightReceiver& receiver, LightSample sample) {
     sample.rise = receiver.bulge;
@@ -82,6 +61,26 @@ PLUMBLINE_INLINE TriangleSample sample_emitting_triangle(const glm::vec3& a, con
 
 }  // namespace
 
+// Without branches, for loops over lanes. The cone is KHR_lights_punctual's, as SpotLight says; equal angles make a
+// hard edge.
+PLUMBLINE_INLINE LightSample LightTable::from_local_light(const LocalLight& light, const glm::vec3& receiver) {
+    const glm::vec3 offset = light.position - receiver;
+    const float squared = glm::dot(offset, offset), distance = std::sqrt(squared);
+    const bool apart = squared > 0.0f;
+    LightSample sample;
+    sample.direction = offset * (apart ? 1.0f / distance : 0.0f);
+    sample.shadow_ray = offset;
+    sample.farthest = 1.0f;
+    const float cosine = -glm::dot(light.axis, sample.direction), width = light.inner_cosine - light.outer_cosine;
+    const float inside = width > 0.0f                   ? (cosine - light.outer_cosine) / width
+                         : cosine >= light.outer_cosine ? 1.0f
+                                                        : 0.0f;
+    const float share = std::clamp(inside, 0.0f, 1.0f);
+    const float received = share * share / light.attenuation.divisor(distance, squared);
+    sample.radiance = light.intensity * (apart ? received : 0.0f);
+    return sample;
+}
+
 LightTable::LightTable(const TracedScene& traced, const EnvironmentDistribution& environment, EmitterSampling strategy)
     : scene_(traced), environment_(environment), strategy_(strategy) {
     const Scene& scene = traced.scene();
@@ -110,7 +109,14 @@ LightTable::LightTable(const TracedScene& traced, const EnvironmentDistribution&
     }
     only_plain_emitters_ = suns_.empty() && !environment_sampled &&
                            std::ranges::none_of(emitters_, [](const Emitter& e) { return e.varies || e.moves; });
-    lights_without_extent_ = scene.point_lights.size() + scene.spot_lights.size() + parallel_.size();
+    for (const PointLight& light : scene.point_lights) {
+        local_.push_back({light.position, glm::vec3(0.0f), light.intensity, light.attenuation, -1.0f, -1.0f});
+    }
+    for (const SpotLight& light : scene.spot_lights) {
+        local_.push_back({light.position, light.direction, light.intensity, light.attenuation,
+                          std::cos(light.outer_angle), std::cos(light.inner_angle)});
+    }
+    lights_without_extent_ = local_.size() + parallel_.size();
 
     const bool rays = strategy != EmitterSampling::lights;
     rays_find_triangles_ = rays && !emitters_.empty();
@@ -202,18 +208,21 @@ LightSample LightTable::sample_extended_from_origin(const LightReceiver& receive
                              : sample_emitter(emitter, receiver, u);
     }
     index -= emitters_.size();
-    return index < suns_.size() ? sample_sun(suns_[index], u) : sample_environment(receiver.normal, u);
+    return index < suns_.size() ? sample_sun(suns_[index], u) : sample_environment(receiver, u);
 }
 
 // Weighted reservoir sampling: each light replaces the one kept so far with probability weight / (sum so far), and the
-// random number is stretched to be used again.
+// random number is stretched to be used again. A specular lobe may stand about another normal, and all that either lobe
+// sees has to be possible.
 LightSample LightTable::sample_without_extent(const LightReceiver& receiver, float pick) const {
     if (lights_without_extent_ == 1) return light_without_extent(0, receiver);
     LightSample kept;
     double sum = 0.0, kept_weight = 0.0, u = pick;
     for (std::size_t i = 0; i < lights_without_extent_; ++i) {
         const LightSample light = light_without_extent(i, receiver);
-        const double weight = luminance(light.radiance) * std::max(0.0f, glm::dot(receiver.normal, light.direction));
+        const float cosine =
+            std::max(glm::dot(receiver.normal, light.direction), glm::dot(receiver.lobe_normal, light.direction));
+        const double weight = luminance(light.radiance) * std::max(0.0f, cosine);
         if (!(weight > 0.0)) continue;
         sum += weight;
         const double share = weight / sum;
@@ -228,20 +237,27 @@ LightSample LightTable::sample_without_extent(const LightReceiver& receiver, flo
     return kept;
 }
 
+PLUMBLINE_FOR_EACH_MACHINE
 void LightTable::sample_without_extent(const VertexBatch& receivers, const Lanes<float>& pick,
                                        LightLanes& samples) const {
-    if (lights_without_extent_ != 1 || parallel_.empty()) {
+    if (lights_without_extent_ > 1) {
         for (int i = 0; i < receivers.count; ++i) {
             samples.set(i, sample_without_extent(receivers.receiver(i), pick[i]));
         }
         return;
     }
-    // One sun, which is the same from everywhere.
-    const LightSample sun = light_without_extent_from(glm::vec3(0.0f), 0);
-    for (int i = 0; i < whole_groups(receivers.count); ++i) {
-        samples.set(i, sun);
-        const bool is_behind = glm::dot(receivers.geometric_normal.get(i), sun.direction) <= 0.0f;
-        samples.rise[i] = is_behind ? receivers.bulge[i] : 0.0f;
+    const int end = whole_groups(receivers.count);
+    if (local_.empty()) {
+        // A sun, which is the same from everywhere.
+        const LightSample sun = light_without_extent_from(glm::vec3(0.0f), 0);
+        for (int i = 0; i < end; ++i) samples.set(i, sun);
+    } else {
+        const LocalLight lamp = local_.front();
+        for (int i = 0; i < end; ++i) samples.set(i, from_local_light(lamp, receivers.ray_origin.get(i)));
+    }
+    for (int i = 0; i < receivers.count && scene_.anything_bulges(); ++i) {
+        const LightReceiver receiver = receivers.receiver(i);
+        if (receiver.sees_from_bulge(samples.direction.get(i))) samples.set(i, light_without_extent(0, receiver));
     }
 }
 
@@ -335,11 +351,16 @@ LightSample LightTable::sample_sun(const Sun& sun, glm::vec2 u) const {
     return sample;
 }
 
-LightSample LightTable::sample_environment(const glm::vec3& normal, glm::vec2 u) const {
+LightSample LightTable::sample_environment(const LightReceiver& receiver, glm::vec2 u) const {
     LightSample sample;
-    if (environment_.empty()) {
-        sample.direction = sample_cosine_hemisphere(normal, u);
-        sample.density = glm::dot(normal, sample.direction) * glm::one_over_pi<float>();
+    if (environment_.empty() && receiver.lobe_normal == receiver.normal) {
+        sample.direction = sample_cosine_hemisphere(receiver.normal, u);
+        sample.density = glm::dot(receiver.normal, sample.direction) * glm::one_over_pi<float>();
+    } else if (environment_.empty()) {
+        // The two lobes see parts of two hemispheres: from the whole sphere, which is a cap of that height.
+        constexpr float height = 2.0f;
+        sample.direction = sample_cone(receiver.normal, height, u);
+        sample.density = cone_density(height);
     } else {
         const EnvironmentSample chosen = environment_.sample(u);
         sample.direction = chosen.direction, sample.density = chosen.density;
@@ -390,21 +411,8 @@ LightSample LightTable::light_without_extent(std::size_t index, const LightRecei
 }
 
 LightSample LightTable::light_without_extent_from(const glm::vec3& origin, std::size_t index) const {
-    const Scene& scene = scene_.scene();
-    if (index < scene.point_lights.size()) {
-        const PointLight& light = scene.point_lights[index];
-        LightSample sample = from_point(origin, light.position, light.attenuation);
-        sample.radiance *= light.intensity;
-        return sample;
-    }
-    index -= scene.point_lights.size();
-    if (index < scene.spot_lights.size()) {
-        const SpotLight& light = scene.spot_lights[index];
-        LightSample sample = from_point(origin, light.position, light.attenuation);
-        sample.radiance *= light.intensity * spot_attenuation(light, -glm::dot(light.direction, sample.direction));
-        return sample;
-    }
-    const DirectionalLight& light = scene.directional_lights[parallel_[index - scene.spot_lights.size()]];
+    if (index < local_.size()) return from_local_light(local_[index], origin);
+    const DirectionalLight& light = scene_.scene().directional_lights[parallel_[index - local_.size()]];
     LightSample sample;
     sample.direction = sample.shadow_ray = -light.direction;
     sample.radiance = light.irradiance;

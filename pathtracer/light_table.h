@@ -85,16 +85,25 @@ private:
         float height, density, probability = 0.0f;
     };
 
+    // A point or spot light.
+    struct LocalLight {
+        glm::vec3 position, axis;  // axis: the way light travels; of a point light 0
+        glm::vec3 intensity;
+        Attenuation attenuation;
+        float outer_cosine, inner_cosine;
+    };
+
     void find_emitters(std::vector<double>& powers);
     void find_suns(std::vector<double>& powers);
     Emitter moved(const Emitter& emitter, float time) const;
     void look_up(const Lanes<std::uint32_t>& chosen, int count, EmitterLanes& lanes) const;
     // Of all that the receiver's origin sees, its face apart.
     LightSample sample_extended_from_origin(const LightReceiver& receiver, double x, float y) const;
+    static LightSample from_local_light(const LocalLight& light, const glm::vec3& receiver);
     LightSample light_without_extent_from(const glm::vec3& origin, std::size_t index) const;
     LightSample sample_emitter(const Emitter& emitter, const LightReceiver& receiver, glm::vec2 u) const;
     LightSample sample_sun(const Sun& sun, glm::vec2 u) const;
-    LightSample sample_environment(const glm::vec3& normal, glm::vec2 u) const;
+    LightSample sample_environment(const LightReceiver& receiver, glm::vec2 u) const;
 
     const TracedScene& scene_;
     const EnvironmentDistribution& environment_;
@@ -102,6 +111,7 @@ private:
     std::vector<Emitter> emitters_;
     std::vector<std::uint32_t> first_emitter_;  // per instance; emitters of one instance lie one after the other
     std::vector<Sun> suns_;
+    std::vector<LocalLight> local_;      // point lights, then spot lights
     std::vector<std::size_t> parallel_;  // directional lights without an angular size
     std::size_t lights_without_extent_ = 0;
     float environment_probability_ = 0.0f;

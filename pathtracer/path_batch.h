@@ -10,6 +10,7 @@
 #include "pathtracer/light_sample.h"
 #include "pathtracer/ray_batch.h"
 #include "pathtracer/sample_sequence.h"
+#include "scenes/ggx.h"
 
 namespace plumb {
 
@@ -52,7 +53,13 @@ struct VertexBatch : SurfaceLanes {
     }
 
     LightReceiver receiver(int lane) const {
-        return {ray_origin.get(lane), shading_normal.get(lane), geometric_normal.get(lane), bulge[lane], time[lane]};
+        const glm::vec3 normal = shading_normal.get(lane);
+        return {ray_origin.get(lane),
+                normal,
+                is_plain[lane] ? normal : lobe_normal(normal, specular[lane].to_viewer),
+                geometric_normal.get(lane),
+                bulge[lane],
+                time[lane]};
     }
 
     // Takes over lane `from` of `other`.

@@ -113,7 +113,7 @@ void PathIntegrator::connect(const VertexBatch& vertices, int vertex, Start star
 }
 
 glm::vec3 PathIntegrator::exact_direct(const SurfacePoint& x, std::uint64_t& rays) const {
-    LightReceiver receiver{x.ray_origin, x.shading_normal, x.geometric_normal, x.bulge, now};
+    LightReceiver receiver{x.ray_origin, x.shading_normal, x.shading_normal, x.geometric_normal, x.bulge, now};
     if (x.bulge > 0.0f && lights_.lights_without_extent() > 0) {
         RayBatch to_bulge;
         Lanes<int> blocked;

@@ -80,7 +80,8 @@ struct Lamps {
     }
 };
 
-constexpr LightReceiver receiver{glm::vec3(0.0f), glm::vec3(0.0f, 1.0f, 0.0f), glm::vec3(0.0f, 1.0f, 0.0f)};
+constexpr glm::vec3 up(0.0f, 1.0f, 0.0f);
+constexpr LightReceiver receiver{glm::vec3(0.0f), up, up, up};
 
 // Cells: each triangle in eight parts of equal area, and the sun's disc in eight.
 int lamp_cell(const Lamps& lamps, const glm::vec3& direction) {

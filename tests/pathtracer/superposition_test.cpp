@@ -28,6 +28,35 @@ TEST(Superposition, OfLightsWithoutExtentIsExact) {
 
 TEST(Superposition, OfAllKindsOfLightHoldsOnAverage) { expect_superposition({"direct", "reflection"}, 0, 4096); }
 
+// At the outline of a coarse smooth ball the interpolated normal leans away from the viewer, and the specular lobe
+// stands about another one: it sees lamps beside the viewer that the surface's normal does not, also as one of several.
+// A lamp alone comes out without noise.
+TEST(Superposition, OfLampsThatOnlyTheLobeSees) {
+    const View view = view_of({0, 0, 1.3f}, {0.6f, 0.2f, 0.2f}, 0.12f, 8);
+    const std::vector<PointLight> lamps = {{"low", {0.2f, 0.0f, 1.4f}, glm::vec3(4, 3, 2)},
+                                           {"high", {0.0f, 0.3f, 1.5f}, glm::vec3(2, 3, 4)}};
+    const auto reflection = [&](const std::vector<PointLight>& lights, std::uint64_t seed) {
+        Scene scene;
+        add_smooth_ball(scene, add_material(scene, glm::vec3(0.9f)), 0);
+        scene.materials[0].metallic = 1.0f, scene.materials[0].roughness = 0.9f;
+        scene.point_lights = lights;
+        auto settings = settings_for({"reflection"}, 1024, 1);
+        settings.seed = seed;
+        return PathTracer(scene).render(view, settings).frame.plane("reflection");
+    };
+    Replicates together, summed;
+    for (std::uint64_t seed = 0; seed < 12; ++seed) {
+        together.add(reflection(lamps, seed));
+        Image sum = reflection({lamps[0]}, 100 + seed);
+        const Image other = reflection({lamps[1]}, 200 + seed);
+        for (std::size_t i = 0; i < sum.values().size(); ++i) sum.values()[i] += other.values()[i];
+        summed.add(sum);
+    }
+    EXPECT_GT(summed.mean(summed.size() - 3), 0.01) << "the lobe should see the lamps";
+    // Where one lamp gives less than a thousandth, it may not be among those that were picked.
+    expect_agreement(together, summed, "two lamps beside the viewer", 2e-3);
+}
+
 class LinearityInEmission : public testing::TestWithParam<bool> {};
 
 Frame at_brightness(float brightness, bool antialias) {
