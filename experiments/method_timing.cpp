@@ -1,8 +1,27 @@
 #include "experiments/method_timing.h"
 
+#include <algorithm>
+
 #include "experiments/statistics.h"
 
 namespace plumb {
+namespace {
+
+Timing timing_of_frame(std::vector<PassTiming> passes) {
+    Timing frame;
+    frame.passes = std::move(passes);
+    for (const PassTiming& pass : frame.passes) frame.median += pass.milliseconds;
+    return frame;
+}
+
+std::vector<Timing> median_timings(const std::vector<std::vector<Timing>>& frames) {
+    std::vector<Timing> timings;
+    timings.reserve(frames.size());
+    for (const std::vector<Timing>& of_subject : frames) timings.push_back(median_timing(of_subject));
+    return timings;
+}
+
+}  // namespace
 
 Timing median_timing(const std::vector<Timing>& frames) {
     Timing timing;
@@ -28,17 +47,29 @@ std::vector<Timing> time_interleaved(const std::vector<TimedFrame>& subjects, co
     }
     std::vector<std::vector<Timing>> frames(subjects.size());
     for (int i = 0; i < settings.repetitions; ++i) {
-        for (std::size_t j = 0; j < subjects.size(); ++j) {
-            Timing frame;
-            frame.passes = subjects[j]();
-            for (const PassTiming& pass : frame.passes) frame.median += pass.milliseconds;
-            frames[j].push_back(std::move(frame));
+        for (std::size_t j = 0; j < subjects.size(); ++j) frames[j].push_back(timing_of_frame(subjects[j]()));
+    }
+    return median_timings(frames);
+}
+
+std::vector<Timing> time_along_path(const std::vector<TimedPath>& subjects, int frames,
+                                    const ExperimentTiming& settings, const std::atomic<bool>* stop) {
+    const int plays = std::max(2, (settings.repetitions + frames - 1) / frames);
+    std::vector<std::vector<Timing>> times(subjects.size());
+    std::size_t turn = 0;
+    for (int play = 0; play < plays; ++play) {
+        for (int i = 0; i < std::max(1, settings.warm_up); ++i) {
+            for (const TimedPath& subject : subjects) subject.begin();
+        }
+        for (int frame = 0; frame < frames; ++frame, ++turn) {
+            for (std::size_t i = 0; i < subjects.size(); ++i) {
+                if (stop && stop->load()) return {};
+                const std::size_t place = (turn + i) % subjects.size();
+                times[place].push_back(timing_of_frame(subjects[place].frame(frame)));
+            }
         }
     }
-    std::vector<Timing> timings;
-    timings.reserve(frames.size());
-    for (const std::vector<Timing>& of_subject : frames) timings.push_back(median_timing(of_subject));
-    return timings;
+    return median_timings(times);
 }
 
 std::vector<Timing> time_interleaved(const std::vector<Pipeline*>& pipelines, const View& view, const Frame* truth,

@@ -14,11 +14,11 @@
 #include "experiments/path_pictures.h"
 #include "experiments/row_measurement.h"
 #include "experiments/settling.h"
-#include "experiments/statistics.h"
 #include "metrics/comparison.h"
 #include "metrics/gbuffer_fidelity.h"
 #include "metrics/path_stability.h"
 #include "metrics/plane_series.h"
+#include "rasterizer/pipeline.h"
 
 namespace plumb {
 namespace {
@@ -33,6 +33,14 @@ PathStabilitySettings stability_settings(const Experiment& experiment) {
     PathStabilitySettings settings;
     settings.noise_limit = experiment.reference.most_noise;
     return settings;
+}
+
+Frame without_derived_planes(const Frame& truth) {
+    Frame frame(truth.width(), truth.height());
+    for (const std::string& plane : truth.plane_names()) {
+        if (!is_derived_plane(plane)) frame.set(plane, truth.plane(plane));
+    }
+    return frame;
 }
 
 }  // namespace
@@ -55,7 +63,7 @@ struct PathRun::Series {
     PathStability stability;
     std::vector<FrameMeasure> frames;
     std::vector<Image> images;
-    std::vector<Timing> timings;
+    Timing timing;
 };
 
 PathRun::PathRun(const Experiment& experiment, const ExperimentScene& entry, const Scene& scene,
@@ -154,28 +162,28 @@ Frame PathRun::render_truth(int frame, RunResults& results) {
     return truth;
 }
 
+FrameRequest PathRun::request_for(int frame, const Frame& truth) const {
+    FrameRequest request{.now = at(frame), .next = at(frame + 1), .truth = &truth};
+    if (frame > 0) request.previous = at(frame - 1);
+    return request;
+}
+
 std::vector<PlaneImage> PathRun::render_methods(int frame, const Frame& truth, RunResults& results) {
     std::vector<PlaneImage> images;
     for (const std::unique_ptr<Series>& series : series_) {
         if (!series->pipeline) continue;
         try {
-            FrameRequest request{.now = at(frame), .next = at(frame + 1), .truth = &truth};
             if (frame == 0) {
                 // The path begins with a history that has settled, as in the middle of a sequence.
                 const Method method = method_in_scene(*find_method(experiment_.methods, series->method), entry_,
                                                       experiment_.file.string());
-                FrameRequest still = request;
-                still.next.reset();
+                const FrameRequest still{.now = at(0), .truth = &truth};
                 for (int i = 1; i < frames_to_settle(method); ++i) series->pipeline->time_passes(still);
-            } else {
-                request.previous = at(frame - 1);
             }
-            RasterResult raster = series->pipeline->render(request);
+            RasterResult raster = series->pipeline->render(request_for(frame, truth));
             PlaneImage& image = images.emplace_back(
                 PlaneImage{path_.path, series->plane, series->method, std::move(raster.frame.plane(series->plane))});
             image.gbuffer_bytes_per_pixel = series->gbuffer_bytes_per_pixel;
-            image.timing = {raster.milliseconds, raster.milliseconds, raster.milliseconds, 1,
-                            std::move(raster.timings)};
         } catch (const std::exception& error) {
             results.failures.push_back({fmt::format("{} / {} / {} / {}, frame {}", entry_.scene, path_.path,
                                                     series->plane, series->method, frame + 1),
@@ -184,6 +192,56 @@ std::vector<PlaneImage> PathRun::render_methods(int frame, const Frame& truth, R
         }
     }
     return images;
+}
+
+bool PathRun::time_methods(RunResults& results) {
+    control_.progress.show(control_.part.to, fmt::format("{}: {}, times of the methods", entry_.scene, path_.path));
+    bool timed = true;
+    for (const std::string& plane : experiment_.planes) timed = time_methods(plane, results) && timed;
+    return timed;
+}
+
+// As for views, plane by plane.
+bool PathRun::time_methods(const std::string& plane, RunResults& results) {
+    std::vector<Series*> in_turn;
+    std::vector<TimedPath> subjects;
+    for (const std::unique_ptr<Series>& series : series_) {
+        if (series->plane != plane || !series->pipeline) continue;
+        in_turn.push_back(series.get());
+        // One still frame is a history: what passes cost does not depend on what it holds.
+        subjects.push_back({[this, pipeline = series->pipeline.get()] {
+                                pipeline->forget();
+                                pipeline->time_passes({.now = at(0), .truth = &stage_truths_.front()});
+                            },
+                            [this, pipeline = series->pipeline.get()](int frame) {
+                                return pipeline->time_passes(
+                                    request_for(frame, stage_truths_[static_cast<std::size_t>(frame)]));
+                            }});
+    }
+    try {
+        const std::vector<Timing> timings = time_along_path(subjects, path_.frames, experiment_.timing, control_.stop);
+        if (stopped()) return false;
+        for (std::size_t i = 0; i < in_turn.size(); ++i) in_turn[i]->timing = timings[i];
+        return true;
+    } catch (const std::exception& error) {
+        results.failures.push_back(
+            {fmt::format("{} / {} / {} / timing", entry_.scene, path_.path, plane), error.what()});
+        // No error is told without its time.
+        std::erase_if(series_, [&](const std::unique_ptr<Series>& series) {
+            return series->plane == plane && series->oracle_layers < 0;
+        });
+        return false;
+    }
+}
+
+void PathRun::keep_first_cell(std::vector<PlaneImage> images) const {
+    for (PlaneImage& image : images) {
+        const auto found = std::ranges::find_if(series_, [&](const std::unique_ptr<Series>& series) {
+            return series->plane == image.plane && series->method == image.method;
+        });
+        image.timing = (*found)->timing;
+    }
+    control_.cells.save(cell_key(0), images);
 }
 
 std::vector<PlaneImage> PathRun::render_oracle(int frame, const Frame& truth, RunResults& results) {
@@ -207,7 +265,7 @@ void PathRun::add(const PlaneImage& image, int frame, const Frame& truth, const 
         measure.flicker = flicker->rms;
     series.frames.push_back(measure);
     if (series.oracle_layers < 0) series.images.push_back(image.image);  // pictures show methods
-    series.timings.push_back(image.timing);
+    if (frame == 0) series.timing = image.timing;                        // of all frames, where a cell has it
     series.gbuffer_bytes_per_pixel = image.gbuffer_bytes_per_pixel;
 }
 
@@ -220,15 +278,25 @@ void PathRun::run(RunResults& results) {
     }
     const std::vector<std::vector<PlaneImage>> kept = load_cells();
     if (kept.empty()) make_pipelines(results);
+    const bool feeds_stages = std::ranges::any_of(experiment_.methods, [&](const Method& method) {
+        return uses_truth(method_in_scene(method, entry_, experiment_.file.string()));
+    });
+    std::vector<PlaneImage> first;
     for (int frame = 0; frame < path_.frames; ++frame) {
         const Frame truth = render_truth(frame, results);
         if (stopped()) return;
         const std::vector<Region> regions = regions_of(truth);
         const auto place = static_cast<std::size_t>(frame);
-        const std::vector<PlaneImage> images = kept.empty() ? render_methods(frame, truth, results) : kept[place];
-        if (kept.empty() && images.size() == experiment_.planes.size() * experiment_.methods.size())
-            control_.cells.save(cell_key(frame), images);
+        std::vector<PlaneImage> images = kept.empty() ? render_methods(frame, truth, results) : kept[place];
         for (const PlaneImage& image : images) add(image, frame, truth, regions);
+        stage_truths_.push_back(feeds_stages ? without_derived_planes(truth) : Frame());
+        // A path with a failure is tried again by the next run.
+        if (kept.empty() && images.size() == experiment_.planes.size() * experiment_.methods.size()) {
+            if (frame == 0)
+                first = std::move(images);
+            else
+                control_.cells.save(cell_key(frame), images);
+        }
         const std::vector<PlaneImage> oracle = render_oracle(frame, truth, results);
         if (stopped()) return;
         for (const PlaneImage& image : oracle) add(image, frame, truth, regions);
@@ -239,6 +307,11 @@ void PathRun::run(RunResults& results) {
     std::erase_if(series_, [&](const std::unique_ptr<Series>& series) {
         return series->frames.size() != static_cast<std::size_t>(path_.frames);
     });
+    if (kept.empty()) {
+        const bool timed = time_methods(results);
+        if (stopped()) return;
+        if (timed && !first.empty()) keep_first_cell(std::move(first));
+    }
     write_rows(results);
     write_pictures(results);
 }
@@ -261,7 +334,7 @@ void PathRun::write_rows(RunResults& results) {
         row.fidelity = fidelity_over_frames(series->fidelity);
         row.frames = series->frames;
         row.stability = series->stability.result();
-        if (row.is_method()) row.timing = median_timing(series->timings);
+        row.timing = series->timing;
         results.rows.push_back(std::move(row));
     }
 }

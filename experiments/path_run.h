@@ -1,5 +1,6 @@
 // One camera path of an experiment's scene: every frame rendered by the path tracer and, in turn, by every method as
-// it would in motion, with its history, and by the oracle; the error over all frames, and how steady it is.
+// it would in motion, with its history, and by the oracle; the error over all frames, and how steady it is. Then the
+// methods play the path once more, without the path tracer and without a picture, for their times (method_timing.h).
 #pragma once
 
 #include <filesystem>
@@ -33,11 +34,17 @@ private:
     ReferenceResult render_reference(int frame, const ReferenceSettings& settings, const std::string& truth,
                                      const ProgressPart& part, RunResults& results) const;
     std::string cell_key(int frame) const;
-    // All frames that an earlier run kept; empty unless it kept every one.
+    // All frames that an earlier run kept; empty unless it kept every one. The first frame's cell is kept last, with
+    // the times.
     std::vector<std::vector<PlaneImage>> load_cells() const;
     void make_pipelines(RunResults& results);
     Frame render_truth(int frame, RunResults& results);
+    FrameRequest request_for(int frame, const Frame& truth) const;
     std::vector<PlaneImage> render_methods(int frame, const Frame& truth, RunResults& results);
+    // False where that failed, or the run was stopped.
+    bool time_methods(RunResults& results);
+    bool time_methods(const std::string& plane, RunResults& results);
+    void keep_first_cell(std::vector<PlaneImage> images) const;
     std::vector<PlaneImage> render_oracle(int frame, const Frame& truth, RunResults& results);
     void add(const PlaneImage& image, int frame, const Frame& truth, const std::vector<Region>& regions);
     void write_rows(RunResults& results);
@@ -54,6 +61,7 @@ private:
     std::unique_ptr<PathTracer> tracer_;
     std::vector<std::unique_ptr<Series>> series_;  // by plane, then by method; the oracle's follow the methods'
     std::vector<std::vector<Image>> truths_;       // by plane, then by frame: for pictures
+    std::vector<Frame> stage_truths_;              // by frame: what stages are fed with, empty where none is
     int reference_samples_ = 0;                    // the fewest of any frame
 };
 

@@ -8,10 +8,6 @@
 namespace plumb {
 namespace {
 
-bool uses_truth(const Method& method) {
-    return method.gbuffer.source == SourceOfStage::truth || method.direct.source == SourceOfStage::truth;
-}
-
 void add_plane(std::vector<std::string>& planes, const std::string& plane) {
     if (std::ranges::find(planes, plane) == planes.end()) planes.push_back(plane);
 }
@@ -30,6 +26,10 @@ ReferenceSettings base_settings(const Experiment& experiment, const ExperimentSc
 }  // namespace
 
 bool has_limited_truth(const std::string& plane) { return plane.starts_with("indirect") || plane == "irradiance"; }
+
+bool uses_truth(const Method& method) {
+    return method.gbuffer.source == SourceOfStage::truth || method.direct.source == SourceOfStage::truth;
+}
 
 std::string full_truth_name(const std::string& plane) {
     return has_limited_truth(plane) || plane == "total" ? "full" : "";

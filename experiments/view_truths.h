@@ -24,6 +24,9 @@ bool has_limited_truth(const std::string& plane);
 // What the full truth of a plane is called: nothing where it could be no other.
 std::string full_truth_name(const std::string& plane);
 
+// Whether a stage of the method is fed from the truth.
+bool uses_truth(const Method& method);
+
 // What the path tracer is asked for so that it is the truth of `planes` in `scene`.
 ReferenceSettings full_truth_settings(const Experiment& experiment, const ExperimentScene& scene);
 // Nothing where no plane has a limited truth or the radius is infinite.

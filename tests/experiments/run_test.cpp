@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
+#include <map>
 #include <set>
 #include <sstream>
 #include <tuple>
@@ -140,6 +141,7 @@ TEST_F(Run, APathHasAnErrorForEachFrameAFlickerBetweenThemAndPictures) {
             EXPECT_EQ(row["milliseconds"]["median"], 0.0) << "no program can be it";
         } else {
             EXPECT_GT(row["frames"][2]["rmse"], 0.0);
+            EXPECT_EQ(row["milliseconds"]["repetitions"], 2 * 3) << "every frame of two plays";
         }
         EXPECT_TRUE(row["regions"].contains("border"));
     }
@@ -240,9 +242,9 @@ paths = [{path = "astray", frames = 2}, {path = "strafe", frames = 2}]
     EXPECT_EQ(run.exit_code, 1) << run.output;
     const std::string last = run.output.substr(std::min(run.output.size(), run.output.find("cells failed:")));
     // A view, a path, and a method that does not make the plane that is asked for: in views and along the path.
-    EXPECT_THAT(
-        last, AllOf(HasSubstr("cornell / nowhere / reference: "), HasSubstr("it has: front"), HasSubstr("cornell / astray: "),
-                    HasSubstr("cornell / ao / dark: "), HasSubstr("cornell / strafe / ao / dark: ")))
+    EXPECT_THAT(last, AllOf(HasSubstr("cornell / nowhere / reference: "), HasSubstr("it has: front"),
+                            HasSubstr("cornell / astray: "), HasSubstr("cornell / ao / dark: "),
+                            HasSubstr("cornell / strafe / ao / dark: ")))
         << run.output;
     const auto json = results("failing");
     EXPECT_EQ(json["failures"].size(), 4u);
@@ -252,6 +254,82 @@ paths = [{path = "astray", frames = 2}, {path = "strafe", frames = 2}]
                                 row["plane"].get<std::string>(), row["method"].get<std::string>()));
     EXPECT_THAT(rows, testing::ElementsAre("front ao one_layer", "front indirect dark", "front indirect one_layer",
                                            "strafe ao one_layer", "strafe indirect dark", "strafe indirect one_layer"));
+}
+
+// Two scenes with a path each; methods with a history.
+std::string two_paths(int repetitions) {
+    return fmt::format(R"(planes = ["ao"]
+resolution = [32, 18]
+methods = ["one_layer", {{name = "steady", base = "one_layer", ao.temporal.alpha = 0.9}},
+           {{name = "fed", base = "two_layers", gbuffer.source = "truth"}}]
+path_tracer_samples = []
+[reference]
+samples = 4
+path_samples = 4
+[timing]
+repetitions = {}
+[[scenes]]
+scene = "cornell"
+views = ["front"]
+paths = [{{path = "strafe", frames = 3}}]
+[[scenes]]
+scene = "clutter"
+views = ["shelf"]
+paths = [{{path = "strafe", frames = 3}}]
+)",
+                       repetitions);
+}
+
+TEST_F(Run, TimesLeaveNoTraceInWhatAPathShows) {
+    std::map<int, nlohmann::json> rows;
+    for (const int repetitions : {1, 9}) {
+        const std::string name = fmt::format("timed{}", repetitions);
+        std::ofstream(folder_->path / (name + ".toml")) << two_paths(repetitions);
+        const ProgramRun run =
+            run_plumbline({"run", (folder_->path / (name + ".toml")).string(), "--output",
+                           (folder_->path / name).string(), "--cache-dir", (folder_->path / "cache").string()});
+        ASSERT_EQ(run.exit_code, 0) << run.output;
+        rows[repetitions] = results(name)["rows"];
+        for (auto& row : rows[repetitions]) {
+            if (row.contains("path")) {
+                EXPECT_EQ(row["milliseconds"]["repetitions"], repetitions == 1 ? 6 : 9) << row["method"];
+            }
+            row.erase("milliseconds");
+        }
+    }
+    EXPECT_EQ(rows[1], rows[9]);
+}
+
+TEST_F(Run, TakesAPathsTimesFromTheCellsOfARunThatWasKilled) {
+    // Killed once all cells of the first scene are kept: one of its view and three of its path.
+    std::ofstream(folder_->path / "paths.toml") << two_paths(1);
+    const auto out = folder_->path / "paths";
+    const std::string command = fmt::format(
+        "'{}' run '{}' --output '{}' --cache-dir '{}' >/dev/null 2>&1 & p=$!; "
+        "for i in $(seq 3000); do [ $(ls '{}'/cells/*.exr 2>/dev/null | wc -l) -ge 4 ] && break; sleep 0.01; done; "
+        "kill -9 $p; wait $p",
+        PLUMBLINE_PROGRAM, (folder_->path / "paths.toml").string(), out.string(), (folder_->path / "cache").string(),
+        out.string());
+    std::ignore = std::system(command.c_str());
+    ASSERT_TRUE(std::filesystem::exists(out / "cells")) << "the run was not killed in its middle";
+    int marked = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(out / "cells")) {
+        if (entry.path().extension() != ".exr") continue;
+        Frame frame = read_exr(entry.path());
+        nlohmann::json images = nlohmann::json::parse(frame.facts.at("cell.images"));
+        if (images[0]["timing"][0] == 0.0 || images[0]["view"] != "strafe") continue;
+        ++marked;
+        for (auto& image : images) image["timing"][0] = 1e6;
+        frame.facts["cell.images"] = images.dump();
+        write_exr(entry.path(), frame);
+    }
+    EXPECT_EQ(marked, 1) << "the first frame's cell has the times of all";
+    run_plumbline({"run", (folder_->path / "paths.toml").string(), "--output", out.string(), "--cache-dir",
+                   (folder_->path / "cache").string()});
+    for (const auto& row : results("paths")["rows"]) {
+        if (row["scene"] != "cornell" || !row.contains("path")) continue;
+        EXPECT_EQ(row["milliseconds"]["median"], 1e6) << row["method"] << " was timed again";
+    }
 }
 
 TEST_F(Run, WritesFramesPicturesAndThePage) {
