@@ -100,7 +100,7 @@ RasterResult render_last_frame(Pipeline& pipeline, const RenderCommandOptions& o
 int render(const RenderCommandOptions& options, const CommonOptions& common) {
     Method method = load_method(options.method);
     const std::vector<std::string> planes = options.view.read_quantities().planes;
-    for (const std::string& assignment : options.assignments) set_method_parameter(method, assignment, &planes);
+    set_method_parameters(method, options.assignments, &planes);
     if (options.print_method) {
         fmt::print("{}", print_method(method));
         return exit_fine;

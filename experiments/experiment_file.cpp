@@ -66,9 +66,7 @@ ExperimentScene read_scene(ConfigReader& reader, const ExperimentScene& defaults
         static_cast<float>(reader.number("minimum_separation", defaults.minimum_separation, 0.0, 1e6));
     if (const ConfigValue* overrides = reader.value("method")) {
         scene.method_overrides = *overrides;
-        // Applied to a default method, so that misspelt parameters are found before anything renders.
-        Method probe;
-        override_method(probe, *overrides, reader.source());
+        const ConfigReader is_table(*overrides, reader.source(), "scenes.method");
     }
     reader.finish();
     return scene;
@@ -248,6 +246,9 @@ Experiment parse_experiment(const ConfigValue& table, const std::filesystem::pat
     experiment.methods = std::move(selection.methods);
     experiment.sweep_points = std::move(selection.sweep_points);
     experiment.method_files = std::move(selection.files);
+    for (const ExperimentScene& scene : experiment.scenes) {
+        require_effective_overrides(experiment.methods, scene.method_overrides, reader.source(), &experiment.planes);
+    }
     auto& presentation = std::get<ConfigMembers>(experiment.presentation.value);
     for (const char* key : {"figures", "originals", "claims", "ladders"}) {
         if (const ConfigValue* tables = reader.value(key)) presentation.push_back({key, *tables});

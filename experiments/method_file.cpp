@@ -18,9 +18,11 @@ namespace {
 constexpr std::array embedded_method_files = {"one_layer.toml", "two_layers.toml", "nielsen2015.toml",
                                               "mara2016_demo.toml"};
 
+// Parameters with their values.
+using Leaves = std::vector<std::pair<std::string, const ConfigValue*>>;
+
 // The members of a table with their dotted names; `name` and `base` are the method's own.
-void collect_leaves(const ConfigMembers& members, const std::string& prefix,
-                    std::vector<std::pair<std::string, const ConfigValue*>>& leaves) {
+void collect_leaves(const ConfigMembers& members, const std::string& prefix, Leaves& leaves) {
     for (const auto& [key, value] : members) {
         const std::string name = prefix.empty() ? key : fmt::format("{}.{}", prefix, key);
         if (const auto* table = std::get_if<ConfigMembers>(&value.value)) {
@@ -82,6 +84,36 @@ void store_leaf(Method& method, const std::string& name, const ConfigValue& valu
                                   name_hint(name, method_parameter_names())));
 }
 
+Leaves leaves_of(const ConfigValue& table) {
+    Leaves leaves;
+    collect_leaves(std::get<ConfigMembers>(table.value), "", leaves);
+    return leaves;
+}
+
+Method with_leaves(const Method& method, const Leaves& leaves, const std::string& source) {
+    Method changed = method;
+    for (const auto& [name, value] : leaves) store_leaf(changed, name, *value, source);
+    return changed;
+}
+
+// Stores what a command line's text says; returns the parameter's name.
+std::string store_assignment(Method& method, const std::string& assignment) {
+    const auto equals = assignment.find('=');
+    if (equals == std::string::npos) {
+        throw ConfigError(fmt::format("'{}': write a parameter as name=value, such as ao.samples=16", assignment));
+    }
+    std::string name = assignment.substr(0, equals);
+    std::string value = assignment.substr(equals + 1);
+    // A shell eats quotes, so a bare word that is not TOML's own counts as a text.
+    const bool word = !value.empty() && std::isalpha(static_cast<unsigned char>(value[0])) && value != "true" &&
+                      value != "false" && value != "inf" && value != "nan";
+    if (word) value = fmt::format("\"{}\"", value);
+    const std::string source = fmt::format("'{}'", assignment);
+    const ConfigValue parsed = parse_config("value = " + value, source);
+    store_leaf(method, name, std::get<ConfigMembers>(parsed.value).front().value, source);
+    return name;
+}
+
 }  // namespace
 
 const Method* find_method(const MethodList& methods, std::string_view name) {
@@ -114,9 +146,8 @@ Method parse_method(const ConfigValue& table, const std::string& source, const M
     }
     method.name = reader.required_text("name");
 
-    std::vector<std::pair<std::string, const ConfigValue*>> leaves;
-    collect_leaves(std::get<ConfigMembers>(table.value), "", leaves);
-    for (const auto& [name, value] : leaves) store_leaf(method, name, *value, source);
+    const Leaves leaves = leaves_of(table);
+    method = with_leaves(method, leaves, source);
     for (const auto& [name, value] : leaves) {
         const std::string reason = reason_without_effect(method, name, planes);
         if (reason.empty()) continue;
@@ -146,32 +177,50 @@ Method load_method(const std::string& name_or_path) {
                                   name_or_path, name_hint(name_or_path, names)));
 }
 
-void set_method_parameter(Method& method, const std::string& assignment, const std::vector<std::string>* planes) {
-    const auto equals = assignment.find('=');
-    if (equals == std::string::npos) {
-        throw ConfigError(fmt::format("'{}': write a parameter as name=value, such as ao.samples=16", assignment));
+void set_method_parameters(Method& method, const std::vector<std::string>& assignments,
+                           const std::vector<std::string>* planes) {
+    std::vector<std::string> names;
+    for (const std::string& assignment : assignments) {
+        const std::string name = store_assignment(method, assignment);
+        const auto before = std::ranges::find(names, name);
+        if (before != names.end()) {
+            throw ConfigError(
+                fmt::format("'{}': has no effect, because '{}' sets the same parameter again; leave one out",
+                            assignments[static_cast<std::size_t>(before - names.begin())], assignment));
+        }
+        names.push_back(name);
     }
-    const std::string name = assignment.substr(0, equals);
-    std::string value = assignment.substr(equals + 1);
-    // A shell eats quotes, so a bare word that is not TOML's own counts as a text.
-    const bool word = !value.empty() && std::isalpha(static_cast<unsigned char>(value[0])) && value != "true" &&
-                      value != "false" && value != "inf" && value != "nan";
-    if (word) value = fmt::format("\"{}\"", value);
-    const std::string source = fmt::format("'{}'", assignment);
-    const ConfigValue parsed = parse_config("value = " + value, source);
-    store_leaf(method, name, std::get<ConfigMembers>(parsed.value).front().value, source);
-    const std::string reason = reason_without_effect(method, name, planes);
-    if (!reason.empty()) throw ConfigError(fmt::format("{}: has no effect, because {}", source, reason));
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        const std::string reason = reason_without_effect(method, names[i], planes);
+        if (!reason.empty()) throw ConfigError(fmt::format("'{}': has no effect, because {}", assignments[i], reason));
+    }
+}
+
+void set_method_parameter(Method& method, const std::string& assignment, const std::vector<std::string>* planes) {
+    set_method_parameters(method, {assignment}, planes);
 }
 
 void override_method(Method& method, const ConfigValue& table, const std::string& source) {
     const ConfigReader reader(table, source, "method");  // checks that it is a table
-    std::vector<std::pair<std::string, const ConfigValue*>> leaves;
-    collect_leaves(std::get<ConfigMembers>(table.value), "", leaves);
+    Leaves leaves = leaves_of(table);
+    const Method all = with_leaves(method, leaves, source);
+    std::erase_if(leaves, [&](const auto& leaf) { return !reason_without_effect(all, leaf.first).empty(); });
+    method = with_leaves(method, leaves, source);
+}
+
+void require_effective_overrides(const MethodList& methods, const ConfigValue& table, const std::string& source,
+                                 const std::vector<std::string>* planes) {
+    const Leaves leaves = leaves_of(table);
     for (const auto& [name, value] : leaves) {
-        Method changed = method;
-        store_leaf(changed, name, *value, source);
-        if (reason_without_effect(changed, name).empty()) method = changed;
+        std::vector<std::string> reasons;
+        for (const Method& method : methods) {
+            const std::string reason = reason_without_effect(with_leaves(method, leaves, source), name, planes);
+            if (reason.empty()) break;
+            reasons.push_back(fmt::format("in '{}' because {}", method.name, reason));
+        }
+        if (methods.empty() || reasons.size() < methods.size()) continue;
+        throw ConfigError(fmt::format("{}:{}: method.{}: has no effect in any of the methods ({}); remove it", source,
+                                      value->line, name, reasons.front()));
     }
 }
 

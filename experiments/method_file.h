@@ -27,12 +27,19 @@ Method parse_method(const ConfigValue& table, const std::string& source, const M
 // A built-in method's name, or the path of a TOML file.
 Method load_method(const std::string& name_or_path);
 
-// Sets one parameter from text as a command line gives it ("ao.samples=6"). Throws ConfigError.
+// Sets parameters from texts as a command line gives them ("ao.samples=6"): first all of them, so that their order
+// means nothing. Throws ConfigError for unknown names, values out of range, one parameter set twice, and what would
+// have no effect then.
+void set_method_parameters(Method& method, const std::vector<std::string>& assignments,
+                           const std::vector<std::string>* planes = nullptr);
 void set_method_parameter(Method& method, const std::string& assignment,
                           const std::vector<std::string>* planes = nullptr);
-// Sets those parameters of `table` that have an effect on `method`; the others are left (a scene's overrides apply to
-// methods of many kinds). Throws ConfigError for unknown names and values out of range.
+// Sets those parameters of `table` that have an effect on `method` once all are set; the others are left (a scene's
+// overrides apply to methods of many kinds). Throws ConfigError for unknown names and values out of range.
 void override_method(Method& method, const ConfigValue& table, const std::string& source);
+// Throws ConfigError for a parameter of such a table that has an effect on none of `methods`.
+void require_effective_overrides(const MethodList& methods, const ConfigValue& table, const std::string& source,
+                                 const std::vector<std::string>* planes = nullptr);
 
 // The whole method as TOML, one "name = value" a line, in the order of method_parameters; parse_method takes it back.
 std::string print_method(const Method& method);

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "rasterizer/mip_chain_pass.h"
 #include "rasterizer/plane_textures.h"
 
 namespace plumb {
@@ -34,6 +35,8 @@ std::string blur_reason(const BilateralBlurSettings& blur, std::string_view grou
     if (blur.kind != BlurKind::bilateral && name != "kind" && name != "radius" && name != "step")
         return fmt::format("{}kind is not \"bilateral\"", group);
     if (name == "depth_key_bits" && blur.depth_sharpness == 0.0f) return fmt::format("{}depth_sharpness = 0", group);
+    // It compares the weight of a tap with those nearer to the centre.
+    if (name == "monotonic" && blur.radius == 1) return fmt::format("{}radius = 1", group);
     return "";
 }
 
@@ -47,6 +50,9 @@ std::string temporal_reason(const Method& method, std::string_view name) {
     }
     if (name.starts_with("antialias.") && name != "antialias.temporal" && !method.antialias.temporal)
         return "antialias.temporal = false";
+    constexpr std::array of_history = {"antialias.clamp", "antialias.dilate", "antialias.lookup"};
+    if (is_one_of(name, of_history) && method.antialias.alpha == 0.0f)
+        return "antialias.alpha = 0 takes nothing from the frames before";
     return "";
 }
 
@@ -215,11 +221,24 @@ std::string bounce_reason(const Method& method, std::string_view name) {
     return "";
 }
 
+bool has_exponent(const AmbientObscuranceSettings& ao) {
+    return ao.estimator == AmbientObscuranceEstimator::alchemy2011 ||
+           ao.estimator == AmbientObscuranceEstimator::nielsen2015;
+}
+
+// The same where the visibility is 1 whatever the taps find.
+std::string open_sky_reason(const AmbientObscuranceSettings& ao, std::string_view name) {
+    if (!name.starts_with("ao.") || name == "ao.enabled") return "";
+    if (ao.intensity == 0.0f) return name == "ao.intensity" ? "" : "ao.intensity = 0 leaves nothing obscured";
+    if (has_exponent(ao) && ao.exponent == 0.0f && name != "ao.exponent" && name != "ao.estimator")
+        return "ao.exponent = 0 leaves nothing obscured";
+    return "";
+}
+
 // The same of the taps of ambient obscurance and radiosity.
 std::string tap_reason(const Method& method, std::string_view name) {
     const AmbientObscuranceEstimator estimator = method.ao.estimator;
-    if (name == "ao.exponent" && estimator != AmbientObscuranceEstimator::alchemy2011 &&
-        estimator != AmbientObscuranceEstimator::nielsen2015) {
+    if (name == "ao.exponent" && !has_exponent(method.ao)) {
         return "only ao.estimator = \"alchemy2011\" or \"nielsen2015\" has one";
     }
     if (name == "ao.epsilon" && estimator == AmbientObscuranceEstimator::sao2012_undivided) {
@@ -231,6 +250,8 @@ std::string tap_reason(const Method& method, std::string_view name) {
     if (!method.radiosity.use_mip_chain && is_one_of(name, of_chain)) {
         return "radiosity.use_mip_chain = false";
     }
+    if (name == "radiosity.mip_offset" && method.radiosity.minimum_mip_level == coarsest_mip_level)
+        return fmt::format("radiosity.minimum_mip_level = {}, the coarsest", coarsest_mip_level);
     return "";
 }
 
@@ -243,9 +264,10 @@ std::string reason_without_effect(const Method& method, std::string_view name, A
     }
     for (std::string reason :
          {direct_reason(method, name, planes), light_reason(method, name, planes),
-          reflection_reason(method.reflections, name), blur_reason(method.ao.blur, "ao.blur.", name),
-          blur_reason(method.radiosity.blur, "radiosity.blur.", name), temporal_reason(method, name),
-          tap_reason(method, name), bounce_reason(method, name), gbuffer_reason(method, name, planes)}) {
+          reflection_reason(method.reflections, name), open_sky_reason(method.ao, name),
+          blur_reason(method.ao.blur, "ao.blur.", name), blur_reason(method.radiosity.blur, "radiosity.blur.", name),
+          temporal_reason(method, name), tap_reason(method, name), bounce_reason(method, name),
+          gbuffer_reason(method, name, planes)}) {
         if (!reason.empty()) return reason;
     }
     return "";

@@ -7,8 +7,6 @@
 namespace plumb {
 namespace {
 
-constexpr int maximum_level = 5;  // as in depth_mip_chain.glsl
-
 // Whichever layer's pass is made first allocates for both.
 const GlTexture& chain_texture(const PassResources& resources, const std::string& plane, const std::string& chain) {
     PlaneTextures& planes = resources.planes;
@@ -22,7 +20,7 @@ const GlTexture& chain_texture(const PassResources& resources, const std::string
 std::string mip_chain_of(const std::string& plane) { return plane + "_mip_chain"; }
 
 int coarsest_mip(int width, int height) {
-    return std::min(maximum_level,
+    return std::min(coarsest_mip_level,
                     static_cast<int>(std::bit_width(static_cast<unsigned>(std::min(width, height)))) - 1);
 }
 

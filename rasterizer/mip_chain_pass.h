@@ -26,7 +26,8 @@ private:
 
 // The plane that holds the chain of `plane`, without a layer's prefix.
 std::string mip_chain_of(const std::string& plane);
-// The level from which there is only one texel across the smaller side, at most 5.
+constexpr int coarsest_mip_level = 5;  // maximum_mip_level of depth_mip_chain.glsl
+// The level from which there is only one texel across the smaller side, at most coarsest_mip_level.
 int coarsest_mip(int width, int height);
 
 PassDeclaration declare_mip_chain(const std::string& pass_name, const std::string& plane, const std::string& chain,

@@ -168,12 +168,43 @@ TEST(MethodFile, ACommandLineAssignmentSetsOneParameter) {
                 HasSubstr("must be 1 to 1000"));
 }
 
+TEST(MethodFile, TheOrderOfAssignmentsMeansNothing) {
+    const auto failure = [](const std::vector<std::string>& assignments) {
+        Method method;
+        return message_of<ConfigError>([&] { set_method_parameters(method, assignments); });
+    };
+    for (const auto& assignments : {std::vector<std::string>{"ao.samples=50", "ao.enabled=false"},
+                                    std::vector<std::string>{"ao.enabled=false", "ao.samples=50"}})
+        EXPECT_THAT(failure(assignments), AllOf(HasSubstr("'ao.samples=50'"), HasSubstr("ao.enabled = false")));
+    Method method;
+    set_method_parameters(method, {"radiosity.ambient=0.3", "radiosity.fill=ambient"});
+    EXPECT_EQ(method.radiosity.ambient, 0.3f);
+    EXPECT_EQ(method.radiosity.fill, AmbientSource::ambient);
+    EXPECT_THAT(failure({"ao.samples=5", "ao.bias=0.1", "ao.samples=6"}),
+                AllOf(HasSubstr("'ao.samples=5'"), HasSubstr("'ao.samples=6'")));
+}
+
 TEST(MethodFile, AScenesOverridesLeaveMethodsTheyDoNotConcern) {
     const ConfigValue table = parse_config("ao.bias = 0.5\ngbuffer.minimum_separation = 0.7", "s.toml");
     Method one = *find_method(builtin_methods(), "one_layer");
     override_method(one, table, "s.toml");
     EXPECT_EQ(one.ao.bias, 0.5f);
     EXPECT_EQ(one.gbuffer.minimum_separation, Method().gbuffer.minimum_separation);
+}
+
+TEST(MethodFile, TheOrderOfAScenesOverridesMeansNothing) {
+    Method method;
+    override_method(method, parse_config("radiosity.ambient = 0.3\nradiosity.fill = \"ambient\"", "s.toml"), "s.toml");
+    EXPECT_EQ(method.radiosity.ambient, 0.3f);
+}
+
+TEST(MethodFile, AnOverrideThatConcernsNoMethodIsAnError) {
+    const MethodList both = builtin_methods(), flat = {*find_method(both, "one_layer")};
+    const ConfigValue table = parse_config("ao.bias = 0.5\ngbuffer.minimum_separation = 0.7", "s.toml");
+    EXPECT_NO_THROW(require_effective_overrides(both, table, "s.toml"));
+    EXPECT_THAT(message_of<ConfigError>([&] { require_effective_overrides(flat, table, "s.toml"); }),
+                AllOf(HasSubstr("s.toml:2: method.gbuffer.minimum_separation"), HasSubstr("'one_layer'"),
+                      HasSubstr("gbuffer.layers = 1")));
 }
 
 }  // namespace

@@ -79,6 +79,52 @@ TEST(ParameterEffects, NothingIsCarriedOnWhereAllIsTakenAway) {
     EXPECT_THAT(reason_without_effect(method, "radiosity.damping"), IsEmpty());
 }
 
+TEST(ParameterEffects, NothingIsFilteredOfFramesThatAreNotKept) {
+    Method method;
+    method.antialias = {.temporal = true, .alpha = 0.0f};
+    for (const char* name : {"antialias.clamp", "antialias.dilate", "antialias.lookup"})
+        EXPECT_THAT(reason_without_effect(method, name), HasSubstr("antialias.alpha = 0")) << name;
+    for (const char* name : {"antialias.temporal", "antialias.alpha", "antialias.jitter_length"})
+        EXPECT_THAT(reason_without_effect(method, name), IsEmpty()) << name << ": the view is moved all the same";
+}
+
+TEST(ParameterEffects, TheCoarsestLevelLeavesNoneToChoose) {
+    Method method;
+    method.radiosity.minimum_mip_level = 4;
+    EXPECT_THAT(reason_without_effect(method, "radiosity.mip_offset"), IsEmpty());
+    method.radiosity.minimum_mip_level = 5;
+    EXPECT_THAT(reason_without_effect(method, "radiosity.mip_offset"), HasSubstr("radiosity.minimum_mip_level = 5"));
+}
+
+TEST(ParameterEffects, AWeightRisesAgainFromTheSecondTapOn) {
+    Method method;
+    method.ao.blur.radius = method.radiosity.blur.radius = 1;
+    EXPECT_THAT(reason_without_effect(method, "ao.blur.monotonic"), HasSubstr("ao.blur.radius = 1"));
+    EXPECT_THAT(reason_without_effect(method, "radiosity.blur.monotonic"), HasSubstr("radiosity.blur.radius = 1"));
+    EXPECT_THAT(reason_without_effect(method, "ao.blur.step"), IsEmpty());
+    method.ao.blur.radius = 2;
+    EXPECT_THAT(reason_without_effect(method, "ao.blur.monotonic"), IsEmpty());
+}
+
+TEST(ParameterEffects, ObscuranceOfNoWeightHasNoOtherParameters) {
+    Method method;
+    method.ao.estimator = AmbientObscuranceEstimator::nielsen2015;
+    method.ao.exponent = 0.0f;
+    for (const char* name : {"ao.samples", "ao.intensity", "ao.blur.radius", "ao.temporal.alpha"})
+        EXPECT_THAT(reason_without_effect(method, name), HasSubstr("ao.exponent = 0")) << name;
+    for (const char* name : {"ao.exponent", "ao.estimator", "ao.enabled"})
+        EXPECT_THAT(reason_without_effect(method, name), IsEmpty()) << name;
+    method.ao.estimator = AmbientObscuranceEstimator::linear;
+    EXPECT_THAT(reason_without_effect(method, "ao.samples"), IsEmpty()) << "which has no exponent";
+    method.ao.intensity = 0.0f;
+    for (const char* name : {"ao.samples", "ao.estimator", "ao.layers"})
+        EXPECT_THAT(reason_without_effect(method, name), HasSubstr("ao.intensity = 0")) << name;
+    EXPECT_THAT(reason_without_effect(method, "ao.intensity"), IsEmpty());
+    // One of the two must be printed, lest the text be another method's.
+    method.ao.estimator = AmbientObscuranceEstimator::nielsen2015;
+    EXPECT_THAT(reason_without_effect(method, "ao.intensity"), IsEmpty());
+}
+
 TEST(ParameterEffects, TheFormatOfLitRadianceIsForWhatTheMethodLights) {
     Method method = with_true_direct_light();
     EXPECT_THAT(reason_without_effect(method, "gbuffer.radiance_format"), HasSubstr("direct.source = \"truth\""));
