@@ -99,7 +99,12 @@ MustFail read_must_fail(ConfigReader& reader, const CheckFile& check) {
     take_members(parameters, {"base"});
     if (std::get<ConfigMembers>(parameters.value).empty()) table.fail("", "breaks nothing: set at least one parameter");
     std::get<ConfigMembers>(named.value).push_back({"name", {must_fail.name, named.line}});
-    must_fail.method = parse_method(named, reader.source(), known);
+    // Broken where the threshold looks, and nowhere else.
+    std::vector<std::string> planes = check.experiment.planes;
+    std::erase_if(planes, [&](const std::string& plane) {
+        return !matches_pattern(check.find_threshold(must_fail.threshold)->rows.plane, plane);
+    });
+    must_fail.method = parse_method(named, reader.source(), known, &planes);
     require_broken_in_scenes(table, must_fail, parameters, check);
     reader.finish();
     return must_fail;

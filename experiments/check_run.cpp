@@ -156,6 +156,7 @@ MustFailVerdict judge_must_fail(const MustFail& must_fail, Verdict verdict) {
 }
 
 CheckResults run_check(const CheckFile& check, const SceneFinder& finder, const RunOptions& options) {
+    require_effects_in_scenes(check.experiment, finder);
     require_limits(check);
     require_workload(check);
     const auto start = std::chrono::steady_clock::now();
@@ -178,6 +179,7 @@ bool CalibrationResults::proven() const {
 
 CalibrationResults run_calibration(const CheckFile& check, const SceneFinder& finder, const RunOptions& options,
                                    const CalibrationOptions& calibration) {
+    require_effects_in_scenes(check.experiment, finder);
     const std::vector<Threshold>& thresholds = check.set.thresholds;
     if (calibration.add) require_workload(check);
     CalibrationResults results;

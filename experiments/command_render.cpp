@@ -73,6 +73,16 @@ void print_timing(const Timing& timing, const GlInfo& info) {
                timer_description(info.software));
 }
 
+// What a method that suits many scenes sets and this one has nothing for.
+void print_idle_parameters(const Method& method, const Scene& scene) {
+    for (const MethodDifference& difference : diff_methods(Method(), method)) {
+        if (!reason_without_effect(method, difference.parameter).empty()) continue;
+        const std::string reason = reason_without_effect(method, difference.parameter, nullptr, &scene);
+        if (!reason.empty())
+            fmt::print("note: {} = {} has no effect, because {}\n", difference.parameter, difference.second, reason);
+    }
+}
+
 // The frame at --time after those before it, so that what the method keeps from frame to frame has come about.
 RasterResult render_last_frame(Pipeline& pipeline, const RenderCommandOptions& options, const Scene& scene,
                                const Method& method, const Frame* truth) {
@@ -106,6 +116,8 @@ int render(const RenderCommandOptions& options, const CommonOptions& common) {
         return exit_fine;
     }
     const Scene scene = options.view.load(SceneFinder(common.scenes_dirs));
+    set_method_parameters(method, options.assignments, &planes, &scene);
+    print_idle_parameters(method, scene);
     const View view = options.view.make_view(scene);
     Frame truth;
     if (!options.truth.empty()) truth = read_exr(options.truth);

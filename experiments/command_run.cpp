@@ -124,6 +124,7 @@ RunResults run_comparison(const RunOptions& run_options, const CommonOptions& co
     const SceneFinder finder(common.scenes_dirs);
     print_question(experiment.title, experiment.question);
     for (const std::string& scene : leave_out_absent_scenes(experiment, finder)) fmt::print("left out: {}\n", scene);
+    require_effects_in_scenes(experiment, finder);
     fmt::print("{}\n", describe_disk_use(disk_use(experiment, finder, run_options.write_frames), run_options.cache_dir,
                                          run_options.output));
     std::fflush(stdout);

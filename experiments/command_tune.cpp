@@ -107,8 +107,9 @@ int run(TuneCommandOptions options, const CommonOptions& common) {
     if (options.quick) make_small(experiment);  // all views are needed
     const Method start = load_method(options.method);
     std::vector<FreeParameter> parameters;
-    for (const std::string& text : options.free) parameters.push_back(parse_free_parameter(text, start));
     experiment.planes = {options.plane};
+    for (const std::string& text : options.free)
+        parameters.push_back(parse_free_parameter(text, start, &experiment.planes));
     experiment.methods = {start};
     experiment.baseline = start.name;
     refuse_overridden(experiment, start, parameters);

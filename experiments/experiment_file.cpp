@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <optional>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -139,16 +141,57 @@ void add_sweep(const ConfigReader& reader, const ConfigValue& table, const std::
     const auto* values = std::get_if<ConfigArray>(&swept->front().value.value);
     if (!values || values->size() < 2)
         fail(sweep.line, fmt::format("'{}' must be an array of two values or more", parameter));
+    for (const ParameterSetting& setting : parameter_settings(plain)) {
+        if (setting.name == parameter)
+            fail(setting.line, fmt::format("'{}' is set beside it as well; remove one of them", parameter));
+    }
+    MethodList made;
     for (const ConfigValue& value : *values) {
         const std::string text = sweep_text(value);
         if (text.empty()) fail(value.line, fmt::format("'{}' must hold numbers, not {}", parameter, value.type_name()));
-        Method method = parse_method(plain, reader.source(), known, &planes);
+        ConfigValue one = plain;
+        std::get<ConfigMembers>(one.value).push_back({parameter, value});
+        Method method = read_method(one, reader.source(), known);
         const std::string curve = method.name;
-        set_method_parameter(method, fmt::format("{}={}", parameter, text), &planes);
         method.name = fmt::format("{}, {} = {}", curve, parameter, text);
+        require_layers(method, reader.source(), table.line, &planes);
         selection.sweep_points[method.name] = {curve, parameter, std::stod(text)};
-        known.push_back(method);
-        selection.methods.push_back(std::move(method));
+        made.push_back(std::move(method));
+    }
+    std::vector<ParameterSetting> settings = parameter_settings(plain);
+    settings.push_back({parameter, sweep.line});
+    for (const ParameterSetting& setting : settings) {
+        std::size_t idle = 0;
+        for (const Method& method : made) {
+            const std::string reason = reason_without_effect(method, setting.name, &planes);
+            idle += reason.empty() ? 0 : 1;
+            if (reason.empty() || (setting.name != parameter && idle < made.size())) continue;
+            throw ConfigError(fmt::format("{}:{}: {}: has no effect in method '{}', because {}; remove it",
+                                          reader.source(), setting.line, setting.name, method.name, reason));
+        }
+        for (const Method& method : made) selection.settings.push_back({method.name, setting.name, setting.line});
+    }
+    known.insert(known.end(), made.begin(), made.end());
+    selection.methods.insert(selection.methods.end(), made.begin(), made.end());
+}
+
+// Throws ConfigError for two that differ, but in nothing that the planes show: all their rows would be the same.
+void require_methods_apart(const ConfigReader& reader, const MethodList& methods,
+                           const std::vector<std::string>& planes) {
+    for (std::size_t i = 0; i < methods.size(); ++i) {
+        for (std::size_t j = 0; j < i; ++j) {
+            std::vector<std::string> idle;
+            bool apart = false;
+            for (const MethodDifference& difference : diff_methods(methods[j], methods[i])) {
+                std::string reason = reason_without_effect(methods[j], difference.parameter, &planes);
+                apart = reason.empty() || reason_without_effect(methods[i], difference.parameter, &planes).empty();
+                if (apart) break;
+                idle.push_back(fmt::format("{}: {}", difference.parameter, reason));
+            }
+            if (apart || idle.empty()) continue;
+            reader.fail("methods", fmt::format("'{}' and '{}' differ in nothing that the planes show ({}); remove one",
+                                               methods[j].name, methods[i].name, fmt::join(idle, "; ")));
+        }
     }
 }
 
@@ -161,7 +204,7 @@ MethodSelection read_methods(ConfigReader& reader, const std::vector<std::string
     if (!array || array->empty()) reader.fail("methods", "must be an array with at least one method");
 
     MethodList known = builtin_methods();
-    MethodFileReader files(reader, kept);
+    MethodFileReader files(reader, planes, kept);
     MethodSelection selection;
     MethodList& methods = selection.methods;
     for (const ConfigValue& entry : *array) {
@@ -187,6 +230,8 @@ MethodSelection read_methods(ConfigReader& reader, const std::vector<std::string
         } else {
             method = parse_method(entry, reader.source(), known, &planes);
             known.push_back(method);
+            for (const ParameterSetting& setting : parameter_settings(entry))
+                selection.settings.push_back({method.name, setting.name, setting.line});
         }
         methods.push_back(std::move(method));
     }
@@ -195,6 +240,7 @@ MethodSelection read_methods(ConfigReader& reader, const std::vector<std::string
         if (!names.insert(method.name).second)
             reader.fail("methods", fmt::format("two methods are called '{}'", method.name));
     }
+    require_methods_apart(reader, methods, planes);
     selection.files = files.files();
     return selection;
 }
@@ -245,6 +291,7 @@ Experiment parse_experiment(const ConfigValue& table, const std::filesystem::pat
     MethodSelection selection = read_methods(reader, experiment.planes, kept);
     experiment.methods = std::move(selection.methods);
     experiment.sweep_points = std::move(selection.sweep_points);
+    experiment.method_settings = std::move(selection.settings);
     experiment.method_files = std::move(selection.files);
     for (const ExperimentScene& scene : experiment.scenes) {
         require_effective_overrides(experiment.methods, scene.method_overrides, reader.source(), &experiment.planes);
@@ -286,6 +333,36 @@ std::vector<std::string> leave_out_absent_scenes(Experiment& experiment, const S
                                      experiment.file.string(), fmt::join(left_out, "; ")));
     }
     return left_out;
+}
+
+void require_effects_in_scenes(const Experiment& experiment, const SceneFinder& finder) {
+    const std::string source = experiment.file.string();
+    std::vector<MethodSetting> idle = experiment.method_settings;  // as far as the scenes have been seen
+    std::map<std::pair<std::string, std::string>, std::string> reasons;
+    bool all_seen = true;
+    for (const ExperimentScene& entry : experiment.scenes) {
+        const bool overrides = !std::get<ConfigMembers>(entry.method_overrides.value).empty();
+        if (idle.empty() && !overrides) continue;
+        std::optional<Scene> scene;
+        try {
+            scene = finder.load(entry.scene);
+        } catch (const SceneError&) {
+            all_seen = false;  // told when it is rendered
+            continue;
+        }
+        require_effective_overrides(experiment.methods, entry.method_overrides, source, &experiment.planes, &*scene);
+        std::erase_if(idle, [&](const MethodSetting& setting) {
+            const Method method = method_in_scene(*find_method(experiment.methods, setting.method), entry, source);
+            std::string& reason = reasons[{setting.method, setting.parameter}];
+            reason = reason_without_effect(method, setting.parameter, &experiment.planes, &*scene);
+            return reason.empty();
+        });
+    }
+    if (!all_seen || idle.empty()) return;
+    const MethodSetting& first = idle.front();
+    throw ConfigError(fmt::format("{}:{}: {}: has no effect in method '{}' in any of the scenes, because {}; remove it",
+                                  source, first.line, first.parameter, first.method,
+                                  reasons.at({first.method, first.parameter})));
 }
 
 void make_small(Experiment& experiment) {

@@ -63,6 +63,12 @@ struct SweepPoint {
     double value = 0.0;
 };
 
+// A parameter that the experiment's file sets for a method.
+struct MethodSetting {
+    std::string method, parameter;
+    int line = 0;
+};
+
 struct Experiment {
     std::string name;
     std::string title;
@@ -82,6 +88,7 @@ struct Experiment {
     MethodList methods;
     MethodFiles method_files;                        // that some of them came from
     std::map<std::string, SweepPoint> sweep_points;  // of the methods that a sweep made, by their names
+    std::vector<MethodSetting> method_settings;
     // The tables `figures`, `originals`, `claims` and `ladders` as the file has them: what is made of the results,
     // never of pixels.
     ConfigValue presentation{ConfigMembers{}, 0};
@@ -101,13 +108,15 @@ ExperimentKind kind_of(const ConfigValue& table, const std::filesystem::path& fi
 struct MethodSelection {
     MethodList methods;
     std::map<std::string, SweepPoint> sweep_points;
+    std::vector<MethodSetting> settings;
     MethodFiles files;
 };
 
 // The key `methods`: names of methods, method files (method_files.h; those in `kept` as they were), or tables. A table
 // with `sweep = { "ao.samples" = [6, 20, 50] }` makes one method per value, named "NAME, ao.samples = 6"...; NAME
 // itself is then no method. Throws ConfigError, also for parameters that have no effect on `planes`, which the
-// experiment asks for.
+// experiment asks for: the swept one must have one at each of its values, the others of a sweep at one of them; and for
+// two methods that differ in nothing but such parameters.
 MethodSelection read_methods(ConfigReader& reader, const std::vector<std::string>& planes,
                              const MethodFiles& kept = {});
 
@@ -118,6 +127,11 @@ Experiment load_experiment(const std::filesystem::path& file);
 // Takes those optional scenes out that cannot be loaded, and returns one line for each: its name and the reason. Throws
 // SceneError where none would be left.
 std::vector<std::string> leave_out_absent_scenes(Experiment& experiment, const SceneFinder& finder);
+
+// Throws ConfigError for a parameter that the experiment's file sets and that nothing in any of the scenes is concerned
+// with, or that a scene overrides and nothing in that scene is: light without lights, reflections without anything
+// glossy. Scenes that cannot be loaded are taken to have everything.
+void require_effects_in_scenes(const Experiment& experiment, const SceneFinder& finder);
 
 // The same question at a small size, for trying it out: a quarter of the resolution and few samples...
 void make_small(Experiment& experiment);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cctype>
 #include <filesystem>
+#include <functional>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -114,6 +115,17 @@ std::string store_assignment(Method& method, const std::string& assignment) {
     return name;
 }
 
+// Throws ConfigError for a parameter of the table for which `reason_of` has one.
+void require_effects(const Method& method, const ConfigValue& table, const std::string& source,
+                     const std::function<std::string(const std::string&)>& reason_of) {
+    for (const ParameterSetting& setting : parameter_settings(table)) {
+        const std::string reason = reason_of(setting.name);
+        if (reason.empty()) continue;
+        throw ConfigError(fmt::format("{}:{}: {}: has no effect in method '{}', because {}; remove it", source,
+                                      setting.line, setting.name, method.name, reason));
+    }
+}
+
 }  // namespace
 
 const Method* find_method(const MethodList& methods, std::string_view name) {
@@ -129,8 +141,13 @@ MethodList builtin_methods() {
     return methods;
 }
 
-Method parse_method(const ConfigValue& table, const std::string& source, const MethodList& known,
-                    const std::vector<std::string>* planes) {
+std::vector<ParameterSetting> parameter_settings(const ConfigValue& table) {
+    std::vector<ParameterSetting> settings;
+    for (const auto& [name, value] : leaves_of(table)) settings.push_back({name, value->line});
+    return settings;
+}
+
+Method read_method(const ConfigValue& table, const std::string& source, const MethodList& known) {
     ConfigReader reader(table, source, "method");
     Method method;
     const std::string base = reader.text("base", "");
@@ -146,24 +163,38 @@ Method parse_method(const ConfigValue& table, const std::string& source, const M
     }
     method.name = reader.required_text("name");
 
-    const Leaves leaves = leaves_of(table);
-    method = with_leaves(method, leaves, source);
-    for (const auto& [name, value] : leaves) {
-        const std::string reason = reason_without_effect(method, name, planes);
-        if (reason.empty()) continue;
-        throw ConfigError(fmt::format("{}:{}: {}: has no effect in method '{}', because {}; remove it", source,
-                                      value->line, name, method.name, reason));
-    }
+    return with_leaves(method, leaves_of(table), source);
+}
+
+void require_layers(const Method& method, const std::string& source, int line, const std::vector<std::string>* planes) {
     for (const auto& [name, layers] :
          {std::pair{"ao", method.ao.enabled ? method.ao.layers : 1},
           std::pair{"radiosity", method.radiosity.enabled ? method.radiosity.layers : 1}}) {
-        if (layers > method.gbuffer.layers) {
+        const std::string parameter = fmt::format("{}.layers", name);
+        if (layers > method.gbuffer.layers && reason_without_effect(method, parameter, planes).empty()) {
             throw ConfigError(
-                fmt::format("{}:{}: {}.layers = {} cannot be combined with gbuffer.layers = {} (method '{}'); "
+                fmt::format("{}:{}: {} = {} cannot be combined with gbuffer.layers = {} (method '{}'); "
                             "lower the one or raise the other",
-                            source, table.line, name, layers, method.gbuffer.layers, method.name));
+                            source, line, parameter, layers, method.gbuffer.layers, method.name));
         }
     }
+}
+
+Method parse_method(const ConfigValue& table, const std::string& source, const MethodList& known,
+                    const std::vector<std::string>* planes) {
+    Method method = read_method(table, source, known);
+    require_effects(method, table, source,
+                    [&](const std::string& name) { return reason_without_effect(method, name, planes); });
+    require_layers(method, source, table.line, planes);
+    return method;
+}
+
+Method parse_shared_method(const ConfigValue& table, const std::string& source, const MethodList& known,
+                           const std::vector<std::string>& planes) {
+    Method method = read_method(table, source, known);
+    require_effects(method, table, source,
+                    [&](const std::string& name) { return reason_without_effect_of_shared(method, name, planes); });
+    require_layers(method, source, table.line, &planes);
     return method;
 }
 
@@ -178,7 +209,7 @@ Method load_method(const std::string& name_or_path) {
 }
 
 void set_method_parameters(Method& method, const std::vector<std::string>& assignments,
-                           const std::vector<std::string>* planes) {
+                           const std::vector<std::string>* planes, const Scene* scene) {
     std::vector<std::string> names;
     for (const std::string& assignment : assignments) {
         const std::string name = store_assignment(method, assignment);
@@ -191,7 +222,7 @@ void set_method_parameters(Method& method, const std::vector<std::string>& assig
         names.push_back(name);
     }
     for (std::size_t i = 0; i < names.size(); ++i) {
-        const std::string reason = reason_without_effect(method, names[i], planes);
+        const std::string reason = reason_without_effect(method, names[i], planes, scene);
         if (!reason.empty()) throw ConfigError(fmt::format("'{}': has no effect, because {}", assignments[i], reason));
     }
 }
@@ -209,12 +240,12 @@ void override_method(Method& method, const ConfigValue& table, const std::string
 }
 
 void require_effective_overrides(const MethodList& methods, const ConfigValue& table, const std::string& source,
-                                 const std::vector<std::string>* planes) {
+                                 const std::vector<std::string>* planes, const Scene* scene) {
     const Leaves leaves = leaves_of(table);
     for (const auto& [name, value] : leaves) {
         std::vector<std::string> reasons;
         for (const Method& method : methods) {
-            const std::string reason = reason_without_effect(with_leaves(method, leaves, source), name, planes);
+            const std::string reason = reason_without_effect(with_leaves(method, leaves, source), name, planes, scene);
             if (reason.empty()) break;
             reasons.push_back(fmt::format("in '{}' because {}", method.name, reason));
         }

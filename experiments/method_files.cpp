@@ -22,7 +22,7 @@ Method MethodFileReader::load(const std::string& name) {
                         "experiment's file, and 'plumbline tune' or 'plumbline render --print-method' write one",
                         name, file.string()));
     }
-    return parse_method(parse_config(files_[name], file.string()), file.string(), builtin_methods());
+    return parse_shared_method(parse_config(files_[name], file.string()), file.string(), builtin_methods(), planes_);
 }
 
 void MethodFileReader::add_base(const ConfigValue& table, MethodList& known) {

@@ -15,8 +15,10 @@ using MethodFiles = std::map<std::string, std::string>;
 
 class MethodFileReader {
 public:
-    // Of the experiment that `reader` reads; a text that `kept` has is not looked for on the disk. Keeps references.
-    MethodFileReader(const ConfigReader& reader, const MethodFiles& kept) : reader_(reader), kept_(kept) {}
+    // Of the experiment that `reader` reads, which asks for `planes`; a text that `kept` has is not looked for on the
+    // disk. Keeps references.
+    MethodFileReader(const ConfigReader& reader, const std::vector<std::string>& planes, const MethodFiles& kept)
+        : reader_(reader), planes_(planes), kept_(kept) {}
 
     // Whether a method's name means a file.
     static bool is_file(const std::string& name);
@@ -29,6 +31,7 @@ public:
 
 private:
     const ConfigReader& reader_;
+    const std::vector<std::string>& planes_;
     const MethodFiles& kept_;
     MethodFiles files_;
 };

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "experiments/parameter_reach.h"
 #include "rasterizer/mip_chain_pass.h"
 #include "rasterizer/plane_textures.h"
 
@@ -194,6 +195,8 @@ std::string reflection_reason(const ReflectionSettings& reflections, std::string
     if (name == "reflections.samples" && reflections.roughness != ReflectionRoughness::samples) {
         return "reflections.roughness is not \"samples\"";
     }
+    if (name == "reflections.step" && reflections.max_steps == 1)
+        return "reflections.max_steps = 1, which is reflections.first_step";
     return "";
 }
 
@@ -255,9 +258,8 @@ std::string tap_reason(const Method& method, std::string_view name) {
     return "";
 }
 
-}  // namespace
-
-std::string reason_without_effect(const Method& method, std::string_view name, AskedPlanes planes) {
+// Why the method's other parameters leave `name` without effect on planes of which each stage shows.
+std::string reason_in_method(const Method& method, std::string_view name, AskedPlanes planes) {
     if (name.starts_with("ao.") && name != "ao.enabled" && !method.ao.enabled) return "ao.enabled = false";
     if (name.starts_with("radiosity.") && name != "radiosity.enabled" && !method.radiosity.enabled) {
         return "radiosity.enabled = false";
@@ -271,6 +273,22 @@ std::string reason_without_effect(const Method& method, std::string_view name, A
         if (!reason.empty()) return reason;
     }
     return "";
+}
+
+}  // namespace
+
+std::string reason_without_effect(const Method& method, std::string_view name, AskedPlanes planes, const Scene* scene) {
+    std::string reason = reason_in_method(method, name, planes);
+    if (!reason.empty()) return reason;
+    if (planes) reason = reason_nobody_reads(method, name, planes, make_scene_of_everything());
+    if (!reason.empty() || !scene) return reason;
+    reason = reason_nobody_reads(method, name, planes, *scene);
+    return reason.empty() ? "" : fmt::format("nothing in scene '{}' is concerned ({})", scene->name, reason);
+}
+
+std::string reason_without_effect_of_shared(const Method& method, std::string_view name,
+                                            const std::vector<std::string>& planes) {
+    return reason_in_method(method, name, &planes);
 }
 
 }  // namespace plumb

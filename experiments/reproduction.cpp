@@ -91,6 +91,7 @@ Measurements run_comparison(const Reproduction& reproduction, const SceneFinder&
     experiment.name = reproduction.name;
     Measurements measurements;
     measurements.left_out = leave_out_absent_scenes(experiment, finder);
+    require_effects_in_scenes(experiment, finder);
     if (quick) make_quick(experiment);
     RunOptions recorded = options;
     recorded.experiment_text = reproduction.text;

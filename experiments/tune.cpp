@@ -144,7 +144,8 @@ private:
 
 }  // namespace
 
-FreeParameter parse_free_parameter(const std::string& text, const Method& method) {
+FreeParameter parse_free_parameter(const std::string& text, const Method& method,
+                                   const std::vector<std::string>* planes) {
     const auto equals = text.find('=');
     if (equals == std::string::npos) {
         throw ConfigError(fmt::format("'{}': write a free parameter as name=low..high, or name=this|that", text));
@@ -166,7 +167,7 @@ FreeParameter parse_free_parameter(const std::string& text, const Method& method
     }
     for (const std::string& end : ends) {
         Method probe = method;  // throws for unknown names, values out of range, and what would change nothing
-        set_method_parameter(probe, fmt::format("{}={}", parameter.name, end));
+        set_method_parameter(probe, fmt::format("{}={}", parameter.name, end), planes);
     }
     return parameter;
 }

@@ -25,8 +25,10 @@ struct FreeParameter {
 };
 
 // "ao.intensity=0.5..2", "ao.samples=8..40" (whole numbers, as the parameter is) or "ao.normals=interpolated|face".
-// Throws ConfigError for what is neither, for unknown parameters, and for values that the parameter refuses.
-FreeParameter parse_free_parameter(const std::string& text, const Method& method);
+// Throws ConfigError for what is neither, for unknown parameters, for values that the parameter refuses, and for what
+// has no effect on `planes` (null: on any).
+FreeParameter parse_free_parameter(const std::string& text, const Method& method,
+                                   const std::vector<std::string>* planes = nullptr);
 
 struct TuningCost {
     double error = 0.0;

@@ -149,6 +149,7 @@ std::vector<PassDeclaration> declare_ambient_obscurance(const Method& method, co
         .disabled = reason_to_be_off(method),
         .remark = fmt::format("{}, {} taps, {} layer{}", to_string(method.ao.estimator), method.ao.samples,
                               method.ao.layers, method.ao.layers == 1 ? "" : "s")};
+    pass.parameters = {{"ao."}, {"gbuffer.guard_band"}};  // with those of its filters, which run where it runs
     if (reads_normals(method)) pass.inputs.emplace_back("normal");
     if (method.ao.layers > 1) pass.inputs.push_back(layer_prefix(1) + depth);
     for (int layer = 0; stores_positions(method) && layer < method.ao.layers; ++layer)

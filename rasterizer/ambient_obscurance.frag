@@ -42,12 +42,15 @@ vec2 obscurance(ivec2 pixel, int layer, float tap_depth, Receiver receiver) {
 #endif
 }
 
+// pow leaves 0 to the power of 0 open, whose limit here is 1: without intensity or exponent nothing is obscured.
+float power(float base, float exponent) { return exponent == 0.0 ? 1.0 : pow(base, exponent); }
+
 float visibility_from(float mean, vec3 camera_normal) {
 #if ESTIMATOR == MARA2016
     return max(0.0, 1.0 - INTENSITY * sqrt(3.14159265 * mean));
 #elif ESTIMATOR == G3D_DEMO
     float facing = mix(1.0, max(0.0, 1.5 * camera_normal.z), 0.35);
-    return pow(max(0.0, 1.0 - sqrt(3.0 * mean * facing)), INTENSITY);
+    return power(max(0.0, 1.0 - sqrt(3.0 * mean * facing)), INTENSITY);
 #elif ESTIMATOR == SAO2012 || ESTIMATOR == SAO2012_UNDIVIDED
 #if ESTIMATOR == SAO2012_UNDIVIDED
     mean *= FALLOFF == HARD ? 2.0 : 4.0;
@@ -55,7 +58,7 @@ float visibility_from(float mean, vec3 camera_normal) {
     float plain = max(0.0, 1.0 - 5.0 * INTENSITY * mean);
     return (pow(plain, 0.2) + 1.2 * plain * plain * plain * plain) / 2.2;
 #elif ESTIMATOR == ALCHEMY2011 || ESTIMATOR == NIELSEN2015
-    return pow(max(0.0, 1.0 - 2.0 * INTENSITY * mean), EXPONENT);
+    return power(max(0.0, 1.0 - 2.0 * INTENSITY * mean), EXPONENT);
 #elif ESTIMATOR == LINEAR
     return max(0.0, 1.0 - 2.0 * INTENSITY * mean);
 #endif

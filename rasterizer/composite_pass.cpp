@@ -115,6 +115,7 @@ PassDeclaration declare_composite(const Scene& scene, const Method& method) {
         pass.remark += fmt::format(", as the demo weighs them, ambient light: {}", to_string(ambient_source(method)));
     for (std::string& plane : AmbientLight::inputs(ambient_source(method))) pass.inputs.push_back(std::move(plane));
     pass.outputs = {composited_plane(method)};
+    pass.parameters = {{"composite."}};
     pass.create = [](const PassResources& resources) { return std::make_unique<CompositePass>(resources); };
     return pass;
 }

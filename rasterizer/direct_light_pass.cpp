@@ -93,6 +93,14 @@ PassDeclaration declare_direct_light(const Scene& scene, const LightSet& lights,
     if (uses_irradiance_cube(scene, method)) pass.inputs.emplace_back("environment.irradiance");
     if (uses_ambient_visibility(scene, method)) pass.inputs.emplace_back("ao");
     pass.outputs = {prefix + "direct"};
+    // What comes from the truth is kept as it comes, in one texture for both layers.
+    if (method.direct.source == SourceOfStage::method) pass.parameters.push_back({"gbuffer.radiance_format"});
+    if (layer == 0) pass.parameters.push_back({"direct.source"});
+    if (scene.has_emissive_surfaces()) pass.parameters.push_back({"direct.emitters"});
+    if (!scene.environment.is_black()) pass.parameters.push_back({"direct.environment"});
+    if (!(scene.point_lights.empty() && scene.spot_lights.empty())) {
+        for (const char* name : {"direct.shadow.lamps", "direct.local_lights"}) pass.parameters.push_back({name});
+    }
     pass.create = [layer](const PassResources& resources) {
         return std::make_unique<DirectLightPass>(resources, layer);
     };

@@ -60,6 +60,9 @@ PassDeclaration declare_environment_maps(const Scene& scene, const Method& metho
     PassDeclaration pass;
     pass.name = "environment maps";
     pass.outputs = RadianceMaps::outputs("environment");
+    // Each texel of a uniform environment is like any other.
+    if (scene.environment.texture != no_texture)
+        pass.parameters = {{"environment.size"}, {"environment.samples", {"environment.prefiltered"}}};
     pass.create = [](const PassResources& resources) { return std::make_unique<EnvironmentMapsPass>(resources); };
     if (scene.environment.is_black()) pass.disabled = "the scene has no environment";
     pass.remark = fmt::format("cubes of {}^2, {} directions per texel, once", method.environment.size,

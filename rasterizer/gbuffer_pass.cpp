@@ -67,8 +67,15 @@ PassDeclaration declare_gbuffer(const Scene& scene, const Method& method) {
     PassDeclaration pass;
     pass.name = pass_name(0);
     pass.outputs = gbuffer_outputs(method, 0);
+    pass.parameters = gbuffer_parameters(0);
     if (one_pass) {
-        for (std::string& plane : gbuffer_outputs(method, 1)) pass.outputs.push_back(std::move(plane));
+        const std::vector<std::string> second = gbuffer_outputs(method, 1);
+        pass.outputs.insert(pass.outputs.end(), second.begin(), second.end());
+        for (const std::vector<ParameterUse>& uses : {gbuffer_parameters(1), layer_parameters(second)})
+            pass.parameters.insert(pass.parameters.end(), uses.begin(), uses.end());
+        // What fragments are reprojected to may lie in it.
+        if (method.gbuffer.generation == LayerGeneration::reproject)
+            pass.parameters.push_back({"gbuffer.guard_band", second});
     }
     pass.create = [one_pass](const PassResources& resources) -> std::unique_ptr<Pass> {
         bool second_layer = false;
@@ -90,6 +97,8 @@ PassDeclaration declare_peeled_layer(const Method& method, int layer) {
     pass.name = pass_name(layer);
     pass.inputs = {layer_prefix(layer - 1) + "depth"};
     pass.outputs = gbuffer_outputs(method, layer);
+    pass.parameters = gbuffer_parameters(layer);
+    for (ParameterUse& use : layer_parameters(pass.outputs)) pass.parameters.push_back(std::move(use));
     pass.create = [layer](const PassResources& resources) { return std::make_unique<GBufferPass>(resources, layer); };
     if (settings.source == SourceOfStage::truth) {
         pass.disabled = "gbuffer.source is \"truth\"";

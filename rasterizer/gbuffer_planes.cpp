@@ -49,6 +49,23 @@ std::vector<std::string> gbuffer_outputs(const Method& method, int layer) {
     return names;
 }
 
+std::vector<ParameterUse> gbuffer_parameters(int layer) {
+    const std::string prefix = layer_prefix(layer);
+    return {{"gbuffer.source"},
+            {"gbuffer.layers"},
+            {"gbuffer.depth_mapping"},
+            {"gbuffer.normal_format", {prefix + "normal"}},
+            {"gbuffer.position", {prefix + "camera_position"}}};
+}
+
+std::vector<ParameterUse> layer_parameters(const std::vector<std::string>& planes) {
+    std::vector<ParameterUse> uses;
+    for (const char* name :
+         {"gbuffer.generation", "gbuffer.layer_selection", "gbuffer.minimum_separation", "gbuffer.separation_unit"})
+        uses.push_back({name, planes});
+    return uses;
+}
+
 bool any_layer_is_read(const PassResources& resources, std::string_view plane) {
     return resources.is_read(plane) || resources.layers_of(plane) > 1;
 }

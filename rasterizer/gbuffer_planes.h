@@ -29,6 +29,10 @@ namespace plumb {
 
 // The names of the planes of `layer`, counted from 0.
 std::vector<std::string> gbuffer_outputs(const Method& method, int layer);
+// The parameters that shape them, however they are drawn.
+std::vector<ParameterUse> gbuffer_parameters(int layer);
+// Those of how the layers behind the first come about, which concern `planes`.
+std::vector<ParameterUse> layer_parameters(const std::vector<std::string>& planes);
 
 bool any_layer_is_read(const PassResources& resources, std::string_view plane);
 

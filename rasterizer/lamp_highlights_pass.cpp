@@ -50,6 +50,7 @@ PassDeclaration declare_lamp_highlights(const LightSet& lights, const Method& me
     pass.inputs = {"depth", "normal", "specular", "roughness"};
     for (std::string& texture : shadow_textures(lights, LightKinds::lamps)) pass.inputs.push_back(std::move(texture));
     pass.outputs = {lamp_highlights_plane};
+    if (!(lights.points.empty() && lights.spots.empty())) pass.parameters = {{"direct.shadow.lamps"}};
     pass.create = [](const PassResources& resources) { return std::make_unique<LampHighlightsPass>(resources); };
     pass.remark = lights.summary();
     if (!method.reflections.enabled) pass.disabled = "method.reflections.enabled is false";

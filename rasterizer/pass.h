@@ -61,7 +61,7 @@ struct PassFrame {
     bool continues = false;
     // The frame before was told of this very one as its next.
     bool foretold = false;
-    int number = 0;  // frames since the last cut: 0 unless `continues`
+    int number = 0;                   // frames since the last cut: 0 unless `continues`
     std::optional<double> time = {};  // of the instances that move (Moment::time)
 };
 
@@ -72,13 +72,23 @@ public:
     virtual void execute(const PassFrame& frame) = 0;
 };
 
+// A parameter of the method that a pass reads, by its name ("ao.samples"), or all of a group ("ao."). Where `planes`
+// are named, of the pass's outputs only these depend on it. What only decides whether the pass can run need not be
+// named.
+struct ParameterUse {
+    std::string name;
+    std::vector<std::string> planes = {};
+};
+
 struct PassDeclaration {
     std::string name;
     std::vector<std::string> inputs, outputs;
     std::function<std::unique_ptr<Pass>(const PassResources&)> create;
     std::string disabled =
         {};  // why it cannot run with this scene and method ("method.ao.enabled is false"); empty: it can
-    std::string remark = {};  // what is worth knowing when it runs ("3 point lights")
+    std::string remark = {};                    // what is worth knowing when it runs ("3 point lights")
+    std::vector<ParameterUse> parameters = {};  // with this scene: those that nothing in it is concerned with are not
+                                                // among them
 };
 
 }  // namespace plumb

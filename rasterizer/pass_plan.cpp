@@ -70,4 +70,27 @@ PassPlan plan_passes(const std::vector<PassDeclaration>& declarations, const std
     return plan;
 }
 
+std::string reason_unread(const std::vector<PassDeclaration>& declarations, const PassPlan& plan,
+                          std::string_view name) {
+    std::string reason = "no pass reads it";
+    for (std::size_t i = 0; i < declarations.size(); ++i) {
+        const PassDeclaration& pass = declarations[i];
+        for (const ParameterUse& use : pass.parameters) {
+            const bool is_group = use.name.ends_with('.');
+            if (is_group ? !name.starts_with(use.name) : name != use.name) continue;
+            if (!plan.decisions[i].runs) {
+                reason =
+                    fmt::format("pass '{}', which reads it, does not run: {}", pass.name, plan.decisions[i].reason);
+            } else if (use.planes.empty() || std::ranges::any_of(use.planes, [&](const std::string& plane) {
+                           return plan.read.contains(plane);
+                       })) {
+                return "";
+            } else {
+                reason = fmt::format("nobody reads {}", fmt::join(use.planes, ", "));
+            }
+        }
+    }
+    return reason;
+}
+
 }  // namespace plumb

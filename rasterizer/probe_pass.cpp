@@ -1,5 +1,6 @@
 #include "rasterizer/probe_pass.h"
 
+#include <algorithm>
 #include <optional>
 
 #include <fmt/format.h>
@@ -19,7 +20,20 @@ namespace {
 // What closer things than this would show is cut away: the probe is meant to stand in free space.
 constexpr float near_plane = 0.01f;
 
-Method method_of_faces(const Method& method) {
+Camera camera_of(const CubeFace& face, const glm::vec3& position, float farthest) {
+    Camera camera;
+    camera.name = "probe";
+    camera.world_from_camera = glm::mat4(face.axes());
+    camera.world_from_camera[3] = glm::vec4(position, 1.0f);
+    camera.vertical_fov = glm::half_pi<float>();
+    camera.near_plane = near_plane;
+    camera.far_plane = farthest;
+    return camera;
+}
+
+}  // namespace
+
+Method method_of_probe_faces(const Method& method) {
     Method faces = method;
     // Encodings stay: the programs that the passes share are made for them.
     faces.gbuffer.normal_format = normal_format_of(method);
@@ -35,25 +49,12 @@ Method method_of_faces(const Method& method) {
     return faces;
 }
 
-Camera camera_of(const CubeFace& face, const glm::vec3& position, float farthest) {
-    Camera camera;
-    camera.name = "probe";
-    camera.world_from_camera = glm::mat4(face.axes());
-    camera.world_from_camera[3] = glm::vec4(position, 1.0f);
-    camera.vertical_fov = glm::half_pi<float>();
-    camera.near_plane = near_plane;
-    camera.far_plane = farthest;
-    return camera;
-}
-
-}  // namespace
-
 // A small pipeline of its own for square views; the geometry is shared.
 class ProbePass::Capture {
 public:
     explicit Capture(const PassResources& outer)
         : context_(outer.context),
-          method_(method_of_faces(outer.method)),
+          method_(method_of_probe_faces(outer.method)),
           planes_(context_, outer.method.probe.size, outer.method.probe.size),
           view_uniforms_(context_) {
         const std::vector<PassDeclaration> declarations = declare_passes(outer.scene, method_, outer.quantities);
@@ -113,11 +114,14 @@ void ProbePass::execute(const PassFrame& frame) {
     if (!every_frame_) capture_.reset();
 }
 
-PassDeclaration declare_probe(const Method& method) {
+PassDeclaration declare_probe(const Scene& scene, const Method& method) {
     const ProbeSettings& probe = method.probe;
     PassDeclaration pass;
     pass.name = "probe";
     pass.outputs = RadianceMaps::outputs("probe");
+    for (const char* name : {"probe.x", "probe.y", "probe.z", "probe.size"}) pass.parameters.push_back({name});
+    if (std::ranges::any_of(scene.instances, &Instance::moves)) pass.parameters.push_back({"probe.every_frame"});
+    pass.parameters.push_back({"environment.samples", {"probe.prefiltered"}});
     pass.create = [](const PassResources& resources) { return std::make_unique<ProbePass>(resources); };
     pass.remark = fmt::format("from ({}, {}, {}), faces of {}^2, {}", probe.x, probe.y, probe.z, probe.size,
                               probe.every_frame ? "every frame" : "once");

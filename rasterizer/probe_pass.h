@@ -30,6 +30,9 @@ private:
     std::unique_ptr<Capture> capture_;  // gone once it is not needed any more
 };
 
-PassDeclaration declare_probe(const Method& method);
+// What its views are rendered with, to show `total`.
+Method method_of_probe_faces(const Method& method);
+
+PassDeclaration declare_probe(const Scene& scene, const Method& method);
 
 }  // namespace plumb

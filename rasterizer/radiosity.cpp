@@ -56,7 +56,7 @@ PassDeclaration declare_missing_bounces(const RadiositySettings& settings) {
 void declare_gathering(std::vector<PassDeclaration>& passes, const Scene& scene, const Method& method, int bounce,
                        int layer) {
     const RadiositySettings& settings = method.radiosity;
-    passes.push_back(declare_radiosity_gather(method, bounce, layer));
+    passes.push_back(declare_radiosity_gather(scene, method, bounce, layer));
     const std::string name = passes.back().name;
     if (settings.blur.radius > 0) {
         passes.push_back(declare_bilateral_blur({.name = name + " blur",

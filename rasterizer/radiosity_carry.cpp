@@ -98,6 +98,13 @@ PassDeclaration declare_radiosity_carry(const Scene& scene, const Method& method
         pass.inputs.push_back(layer_prefix(layer) + std::string(gbuffer_history));
         for (std::string& plane : Reprojection::inputs(scene, layer)) pass.inputs.push_back(std::move(plane));
     }
+    for (const char* name : {"radiosity.damping", "radiosity.carry_from", "radiosity.carry_to",
+                             "radiosity.second_layer", "gbuffer.radiance_format"})
+        pass.parameters.push_back({name});
+    if (settings.damping < 1.0f) {
+        for (const char* name : {"radiosity.saturated_boost", "radiosity.unsaturated_boost"})
+            pass.parameters.push_back({name});
+    }
     pass.create = [](const PassResources& resources) { return std::make_unique<RadiosityCarryPass>(resources); };
     pass.remark =
         fmt::format("what was {} m off is lost, {} of the rest taken away", settings.carry_to, settings.damping);

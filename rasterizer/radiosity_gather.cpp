@@ -168,7 +168,7 @@ std::vector<PassDeclaration> declare_gathered_chains(const RadiositySettings& se
     return passes;
 }
 
-PassDeclaration declare_radiosity_gather(const Method& method, int bounce, int layer) {
+PassDeclaration declare_radiosity_gather(const Scene& scene, const Method& method, int bounce, int layer) {
     const RadiositySettings& settings = method.radiosity;
     PassDeclaration pass;
     pass.name = name_of(bounce, layer);
@@ -187,6 +187,16 @@ PassDeclaration declare_radiosity_gather(const Method& method, int bounce, int l
             pass.inputs.push_back(layer_prefix(other) + radiosity_plane(bounce));
     }
     pass.outputs = {layer_prefix(layer) + gathered_plane(settings, bounce)};
+    // With those of its filters, which run where it runs.
+    for (const char* name : {"enabled", "estimator", "samples", "layers", "radius", "spread_pixels", "test_tap_normal",
+                             "normalisation", "use_mip_chain", "mip_offset", "minimum_mip_level",
+                             "mip_normals_and_radiance", "blur.", "temporal.", "carry"})
+        pass.parameters.push_back({fmt::format("radiosity.{}", name)});
+    pass.parameters.push_back({"gbuffer.guard_band"});
+    if (scene.has_emissive_surfaces()) pass.parameters.push_back({"radiosity.emitters_shine"});
+    if (bounce > 1) {
+        for (const char* name : {"radiosity.bounces", "radiosity.second_layer"}) pass.parameters.push_back({name});
+    }
     pass.create = [bounce, layer](const PassResources& resources) {
         return std::make_unique<RadiosityGatherPass>(resources, bounce, layer);
     };

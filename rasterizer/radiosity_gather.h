@@ -64,7 +64,7 @@ private:
 
 // What the gathering of a bounce reads besides planes that others make: their MIP chains, where the method wants them.
 std::vector<PassDeclaration> declare_gathered_chains(const RadiositySettings& settings, int bounce);
-PassDeclaration declare_radiosity_gather(const Method& method, int bounce, int layer);
+PassDeclaration declare_radiosity_gather(const Scene& scene, const Method& method, int bounce, int layer);
 
 std::string_view to_string(RadiosityEstimator estimator);
 std::string_view to_string(RadiosityNormalisation normalisation);

@@ -63,6 +63,10 @@ PassDeclaration declare_radiosity_reflection(const Scene& scene, const Method& m
     pass.inputs = {layer_prefix(gathered_layer(method.radiosity, layer)) + radiosity_plane(bounce),
                    prefix + diffuse_albedo_plane(scene, method)};
     pass.outputs = {plane};
+    pass.parameters = {{"radiosity.saturated_boost"}, {"radiosity.unsaturated_boost"}, {"radiosity.bounces"}};
+    if (layer > 0) pass.parameters.push_back({"radiosity.second_layer"});
+    if (!plane_of_later_bounces(method.radiosity, bounce).empty())
+        pass.parameters.push_back({"gbuffer.radiance_format"});
     pass.create = [bounce, layer](const PassResources& resources) {
         return std::make_unique<RadiosityReflectionPass>(resources, bounce, layer);
     };

@@ -83,6 +83,11 @@ PassDeclaration declare_radiosity_sum(const Scene& scene, const Method& method) 
         for (std::string& plane : AmbientLight::inputs(settings.fill)) pass.inputs.push_back(std::move(plane));
     }
     for (const Output& output : outputs) pass.outputs.emplace_back(output.plane);
+    pass.parameters = {{"radiosity.bounces", {"irradiance", "indirect"}},
+                       {"radiosity.saturated_boost", {"indirect"}},
+                       {"radiosity.unsaturated_boost", {"indirect"}},
+                       {"radiosity.fill", {"irradiance", "indirect"}},
+                       {"radiosity.ambient", {"irradiance", "indirect"}}};
     pass.create = [](const PassResources& resources) { return std::make_unique<RadiositySumPass>(resources); };
     pass.remark = fmt::format("{} bounce{}{}", settings.bounces, settings.bounces == 1 ? "" : "s",
                               fills(method) ? fmt::format(", filled from: {}", to_string(settings.fill)) : "");

@@ -229,6 +229,17 @@ std::vector<PassDeclaration> declare_reflections(const Scene& scene, const Light
         pass.remark = "nothing in the scene has a specular lobe";
         return {std::move(pass)};
     }
+    for (const char* name :
+         {"enabled", "roughness", "samples", "layers", "step", "first_step", "max_steps", "refinement_steps",
+          "thickness", "max_distance", "bias", "test_hit_normal", "border_fade", "fallback"})
+        pass.parameters.push_back({fmt::format("reflections.{}", name)});
+    pass.parameters.push_back({"gbuffer.guard_band"});
+    if (settings.thickness == 0.0f) {
+        for (const char* name : {"gbuffer.minimum_separation", "gbuffer.separation_unit"})
+            pass.parameters.push_back({name});
+    }
+    if (!(lights.points.empty() && lights.spots.empty() && lights.directionals.empty()))
+        pass.parameters.push_back({"reflections.lamps"});
     pass.create = [](const PassResources& resources) { return std::make_unique<ReflectionPass>(resources); };
     pass.inputs = {"depth", "normal", "specular", "roughness"};
     for (std::string& plane : SurfaceRadiance(scene, method, quantities).planes(settings.layers))

@@ -277,6 +277,17 @@ PassDeclaration declare_shadows(const LightSet& lights, const Method& method) {
     PassDeclaration pass;
     pass.name = "shadows";
     pass.outputs = shadow_textures(lights);
+    pass.parameters = {{"direct.shadow.point_map", {point_texture, paraboloid_texture}},
+                       {"direct.shadow.cube_generation", {point_texture, emitter_texture}},
+                       {"direct.shadow.cube_distance", {point_texture, emitter_texture}},
+                       {"direct.shadow.cube_size", {point_texture}},
+                       {"direct.shadow.paraboloid_size", {paraboloid_texture}},
+                       {"direct.shadow.paraboloid_tessellation", {paraboloid_texture}},
+                       {"direct.shadow.map_size", {map_texture}},
+                       {"direct.shadow.pcf_radius", {map_texture}},
+                       {"direct.shadow.emitter_size", {emitter_texture}},
+                       {"direct.shadow.emitter_samples", {emitter_texture}},
+                       {"direct.shadow.bias"}};
     pass.create = [](const PassResources& resources) { return std::make_unique<ShadowPass>(resources); };
     struct Group {
         std::size_t count;

@@ -72,10 +72,15 @@ PassDeclaration declare_true_gbuffer(const Method& method) {
     PassDeclaration pass;
     pass.name = "gbuffer.truth";
     pass.outputs = {"depth", "normal", "albedo", std::string(gbuffer_history), "emission"};
+    const auto first_layer_outputs = static_cast<std::ptrdiff_t>(pass.outputs.size());
     for (int layer = 1; layer < method.gbuffer.layers; ++layer) {
         for (const std::string plane : {"depth", "normal", "albedo", gbuffer_history.data()})
             pass.outputs.push_back(layer_prefix(layer) + plane);
     }
+    pass.parameters = {{"gbuffer.source"}, {"gbuffer.layers"}};
+    // The truth's layers are that far apart.
+    const std::vector<std::string> behind(pass.outputs.begin() + first_layer_outputs, pass.outputs.end());
+    if (!behind.empty()) pass.parameters.push_back({"gbuffer.minimum_separation", behind});
     pass.create = [planes = pass.outputs](const PassResources& resources) {
         return std::make_unique<TruthPass>(resources, planes);
     };
@@ -87,6 +92,7 @@ PassDeclaration declare_true_direct(const Method& method) {
     PassDeclaration pass;
     pass.name = "direct.truth";
     pass.outputs = {"direct"};
+    pass.parameters = {{"direct.source"}};
     pass.create = [planes = pass.outputs](const PassResources& resources) {
         return std::make_unique<TruthPass>(resources, planes);
     };

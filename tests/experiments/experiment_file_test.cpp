@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "experiments/scene_finder.h"
 #include "tests/message_of.h"
 #include "tests/temporary_folder.h"
 
@@ -141,19 +142,37 @@ scene = "cornell"
                       HasSubstr((folder.path / "tuned/two.toml").string()), HasSubstr("plumbline tune")));
 }
 
+TEST(ExperimentFile, AMethodFileMaySetUpOtherStagesButNoLayersForNobody) {
+    const TemporaryFolder folder;
+    const auto parse_with = [&](const std::string& method) {
+        folder.write("mine.toml", "name = \"mine\"\n" + method);
+        const std::filesystem::path file = folder.path / "e.toml";
+        const std::string text = "planes = [\"ao\"]\nmethods = [\"mine.toml\"]\nscenes = [{ scene = \"cornell\" }]";
+        return parse_experiment(parse_config(text, file.string()), file);
+    };
+    EXPECT_NO_THROW(parse_with("radiosity.samples = 4")) << "another experiment asks for indirect light";
+    EXPECT_THAT(message_of<ConfigError>([&] { parse_with("gbuffer.layers = 3"); }),
+                AllOf(HasSubstr("mine.toml:2: gbuffer.layers"), HasSubstr("no plane of layer 3")));
+}
+
+// And none sets what nothing in its scenes is concerned with, as far as these are part of the program.
 TEST(ExperimentFile, EveryOneThatIsShippedCanBeRead) {
     int read = 0;
-    for (const auto& entry : std::filesystem::directory_iterator(PLUMBLINE_SOURCE_DIR "/experiments")) {
-        const std::filesystem::path& file = entry.path();
-        if (file.extension() != ".toml" || file.stem().string().ends_with("thresholds")) continue;
-        SCOPED_TRACE(file);
-        EXPECT_NO_THROW({
-            const ConfigValue table = read_config(file);
-            if (kind_of(table, file) == ExperimentKind::comparison) parse_experiment(table, file);
-        });
-        ++read;
+    for (const char* folder : {PLUMBLINE_SOURCE_DIR "/experiments", PLUMBLINE_SOURCE_DIR "/experiments/reproduce"}) {
+        for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+            const std::filesystem::path& file = entry.path();
+            const std::string stem = file.stem().string();
+            if (file.extension() != ".toml" || stem.ends_with("thresholds") || stem.ends_with("drawings")) continue;
+            SCOPED_TRACE(file);
+            EXPECT_NO_THROW({
+                const ConfigValue table = read_config(file);
+                if (kind_of(table, file) == ExperimentKind::comparison)
+                    require_effects_in_scenes(parse_experiment(table, file), SceneFinder({}));
+            });
+            ++read;
+        }
     }
-    EXPECT_GE(read, 8);
+    EXPECT_GE(read, 30);
 }
 
 TEST(ExperimentFile, AnUnknownPlaneIsAnErrorThatNamesTheNearest) {

@@ -27,6 +27,16 @@ TEST(ReflectionParameters, SamplesMatterWhereRoughnessIsSampled) {
     EXPECT_THAT(reason_without_effect(method, "reflections.samples"), IsEmpty());
 }
 
+TEST(ReflectionParameters, AStepFollowsTheFirstOne) {
+    Method method;
+    method.reflections.enabled = true;
+    method.reflections.max_steps = 1;
+    EXPECT_THAT(reason_without_effect(method, "reflections.step"), HasSubstr("reflections.max_steps = 1"));
+    EXPECT_THAT(reason_without_effect(method, "reflections.first_step"), IsEmpty());
+    method.reflections.max_steps = 2;
+    EXPECT_THAT(reason_without_effect(method, "reflections.step"), IsEmpty());
+}
+
 TEST(ReflectionParameters, CubesMatterWhereTheFallbackReadsThem) {
     Method method;
     method.reflections.enabled = true;

@@ -1,0 +1,140 @@
+#include "parameter_pairs.h"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "experiments/method_file.h"
+#include "parameter_pictures.h"
+#include "rasterizer/gl_error.h"
+
+namespace plumb {
+namespace {
+
+// Pairs of which this small scene cannot tell, with the reason: "NAME beside VALUE" or, where that is empty, NAME
+// beside anything.
+struct PairException {
+    std::string name, beside, reason;
+};
+const std::vector<PairException> pair_exceptions = {};
+
+bool is_excepted(const ParameterPair& pair) {
+    if (parameters_without_pixels().contains(pair.name)) return true;
+    return std::ranges::any_of(pair_exceptions, [&](const PairException& exception) {
+        return exception.name == pair.name && (exception.beside.empty() || pair.beside.starts_with(exception.beside));
+    });
+}
+
+std::string group_of(const std::string& name) { return name.substr(0, name.find('.')); }
+
+// Stores each value of the parameter that may leave others nothing to do - all or nothing, and each choice - and calls
+// `use` with the method.
+template <class Use>
+void for_each_value(const Method& start, const std::string& name, const Use& use) {
+    Method method = start;
+    std::vector<MethodParameter> parameters = method_parameters(method);
+    const MethodParameter& parameter = *std::ranges::find(parameters, name, &MethodParameter::name);
+    const std::string before = print_parameter(parameter);
+    const auto tell = [&] {
+        const std::string now = print_parameter(parameter);
+        if (now != before) use(method, fmt::format("{} = {}", name, now));
+    };
+    if (bool* const* truth = std::get_if<bool*>(&parameter.value)) {
+        **truth = !**truth;
+        tell();
+    } else if (int* const* whole = std::get_if<int*>(&parameter.value)) {
+        constexpr double few = 8.0;  // ends far away leave others something to do, and take their time
+        for (const double end : {parameter.least, parameter.most}) {
+            if (end > few) continue;
+            **whole = static_cast<int>(end);
+            tell();
+        }
+    } else if (float* const* number = std::get_if<float*>(&parameter.value)) {
+        for (const float end : {0.0f, 1.0f}) {
+            if (end != static_cast<float>(parameter.least) && end != static_cast<float>(parameter.most)) continue;
+            **number = end;
+            tell();
+        }
+    } else {
+        const auto& choice = std::get<MethodChoice>(parameter.value);
+        for (int i = 0; i < static_cast<int>(choice.names.size()); ++i) {
+            choice.set(i);
+            tell();
+        }
+    }
+}
+
+// Null where a pipeline refuses the method.
+std::optional<Frame> try_to_render(GlContext& context, const Scene& scene, const Method& method,
+                                   const std::vector<std::string>& planes) {
+    try {
+        return render_busy_frames(context, scene, method, planes);
+    } catch (const std::exception&) {
+        return std::nullopt;
+    }
+}
+
+}  // namespace
+
+std::vector<std::string> parameter_groups() {
+    std::vector<std::string> groups;
+    for (const std::string& name : method_parameter_names()) {
+        if (std::ranges::find(groups, group_of(name)) == groups.end()) groups.push_back(group_of(name));
+    }
+    return groups;
+}
+
+std::vector<ParameterPair> pairs_within(const std::string& group) {
+    std::vector<ParameterPair> pairs;
+    for (const std::string& name : method_parameter_names()) {
+        if (group_of(name) != group) continue;
+        for (const std::string& other : method_parameter_names()) {
+            if (group_of(other) != group || other == name) continue;
+            for_each_value(small_method(name), other, [&](const Method& method, const std::string& value) {
+                pairs.push_back({name, value, method, telling_planes(name)});
+            });
+        }
+    }
+    return pairs;
+}
+
+std::vector<ParameterPair> pairs_with_planes() {
+    std::vector<ParameterPair> pairs;
+    for (const std::string& name : method_parameter_names()) {
+        for (const char* plane : {"ao", "direct", "indirect", "indirect.1", "irradiance", "reflection", "emission",
+                                  "total", "depth", "normal", "motion", "layer2.depth", "layer2.normal"})
+            pairs.push_back({name, plane, small_method(name), {plane}});
+    }
+    return pairs;
+}
+
+PairVerdicts judge_pairs(GlContext& context, const Scene& scene, const std::vector<ParameterPair>& pairs,
+                         std::size_t first, std::size_t stride) {
+    PairVerdicts verdicts;
+    std::map<std::string, std::optional<Frame>> rendered;
+    for (std::size_t i = first; i < pairs.size(); i += stride) {
+        const ParameterPair& pair = pairs[i];
+        if (is_excepted(pair)) continue;
+        const std::string key = fmt::format("{:016x} {}", method_hash(pair.method), pair.planes.front());
+        if (!rendered.contains(key)) rendered[key] = try_to_render(context, scene, pair.method, pair.planes);
+        const std::optional<Frame>& before = rendered.at(key);
+        if (!before) continue;
+        Method changed = pair.method;
+        use_another_value(changed, pair.name);
+        const std::optional<Frame> after = try_to_render(context, scene, changed, pair.planes);
+        if (!after) continue;
+        // What turns a stage off is without effect where that stage, on, would have none.
+        const std::string reason = reason_without_effect(pair.method, pair.name, &pair.planes, &scene);
+        const bool same = same_pixels(*before, *after, pair.planes);
+        const std::string text = fmt::format("{} beside {}", pair.name, pair.beside);
+        if (same && reason.empty()) verdicts.silent.push_back(text);
+        if (!same && !reason.empty()) verdicts.slander.push_back(fmt::format("{}: {}", text, reason));
+        ++verdicts.compared;
+    }
+    return verdicts;
+}
+
+}  // namespace plumb
