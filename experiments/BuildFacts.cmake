@@ -1,31 +1,18 @@
-# Script behind build_facts.cpp: writes OUTPUT anew where git's description of SOURCE_DIR or a file that decides a
-# reference's pixels has changed since the last build.
+# Script behind build_facts.cpp: writes OUTPUT anew where git's description of SOURCE_DIR has changed since the last build.
 execute_process(COMMAND git describe --always --dirty --tags WORKING_DIRECTORY ${SOURCE_DIR}
                 OUTPUT_VARIABLE describe OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE no_git)
 if(no_git)
     set(describe "unknown")
 endif()
 
-# What a scene file becomes is in the scene's content hash; here is what turns a scene into radiance.
-file(GLOB sources ${SOURCE_DIR}/pathtracer/*.cpp ${SOURCE_DIR}/pathtracer/*.h ${SOURCE_DIR}/frames/quantities.*
-     ${SOURCE_DIR}/scenes/camera.* ${SOURCE_DIR}/scenes/ggx.* ${SOURCE_DIR}/scenes/keyed_curve.*
-     ${SOURCE_DIR}/scenes/light.* ${SOURCE_DIR}/scenes/material.* ${SOURCE_DIR}/scenes/motion.*
-     ${SOURCE_DIR}/scenes/scene.* ${SOURCE_DIR}/scenes/specular_albedo.* ${SOURCE_DIR}/scenes/texture.*)
-list(SORT sources)
-set(hashes "")
-foreach(file ${sources})
-    file(SHA256 ${file} hash)
-    string(APPEND hashes ${hash})
-endforeach()
-string(SHA256 integrator "${hashes}")
-string(SUBSTRING ${integrator} 0 16 integrator)
-
 file(CONFIGURE OUTPUT ${OUTPUT} CONTENT [[#include "experiments/build_facts.h"
+
+#include "pathtracer/integrator_hash.h"
 
 namespace plumb {
 
 const BuildFacts& build_facts() {
-    static constexpr BuildFacts facts{"@VERSION@", "@describe@", "@COMPILER@", "@BUILD_TYPE@", "@integrator@"};
+    static const BuildFacts facts{"@VERSION@", "@describe@", "@COMPILER@", "@BUILD_TYPE@", integrator_hash()};
     return facts;
 }
 

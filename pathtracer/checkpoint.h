@@ -9,12 +9,12 @@
 
 namespace plumb {
 
-// Tells runs apart: sums may only be continued with the same scene, view and settings, where Embree computes the same
-// bits. The number of samples and the target error may differ.
+// Tells runs apart: sums may only be continued with the same scene, view and settings, by a program that makes the same
+// samples of them, where Embree computes the same bits. The number of samples and the target error may differ.
 struct CheckpointKey {
-    std::uint64_t scene = 0, view = 0, settings = 0, embree = 0;
+    std::uint64_t scene = 0, view = 0, settings = 0, integrator = 0, embree = 0;
 
-    // `span` is the path tracer's, `embree` the fingerprint of its Embree.
+    // Of this program. `span` is the path tracer's, `embree` the fingerprint of its Embree.
     static CheckpointKey of(const Scene& scene, const TimeSpan& span, const View& view,
                             const ReferenceSettings& settings, std::uint64_t embree);
 };
@@ -31,7 +31,7 @@ void write_checkpoint(const std::filesystem::path& path, const CheckpointKey& ke
                       std::span<const double> sums);
 
 // Adds the file's sums to `sums`. Throws ReferenceError for a file that is not a checkpoint, is truncated or damaged,
-// or belongs to another scene, view, settings or Embree; `sums` may then be of no use.
+// or belongs to another scene, view, settings, build or Embree; `sums` may then be of no use.
 CheckpointState add_checkpoint(const std::filesystem::path& path, const CheckpointKey& key, std::span<double> sums);
 
 }  // namespace plumb

@@ -9,6 +9,7 @@
 
 #include "pathtracer/checkpoint.h"
 #include "pathtracer/embree_fingerprint.h"
+#include "pathtracer/integrator_hash.h"
 #include "pathtracer/reference_error.h"
 #include "pathtracer/traced_scene.h"
 #include "scenes/builtin.h"
@@ -33,20 +34,35 @@ TEST(EmbreeFingerprint, IsTheSameForEachDeviceAndTellsInstructionSetsApart) {
     EXPECT_EQ(TracedScene(scene).embree_fingerprint(), fingerprint_with(nullptr));
 }
 
-TEST(EmbreeFingerprint, OfAnotherMachineKeepsACheckpointFromBeingContinued) {
+TEST(CheckpointKey, OfAnotherMachineOrBuildKeepsACheckpointFromBeingContinued) {
     const TemporaryFolder folder;
     const auto file = folder / "run.checkpoint";
-    const CheckpointKey here{1, 2, 3, 4}, there{1, 2, 3, 5};
+    const CheckpointKey here{1, 2, 3, 4, 5};
+    CheckpointKey other_machine = here, other_build = here;
+    other_machine.embree = 6, other_build.integrator = 6;
     const std::vector<double> written = {1.0, 2.0, 4.0};
-    write_checkpoint(file, there, {0, 16, 100, 1.0}, written);
-    std::vector<double> sums(written.size());
-    EXPECT_THAT([&] { add_checkpoint(file, here, sums); },
-                testing::ThrowsMessage<ReferenceError>(testing::AllOf(
-                    testing::HasSubstr(file.string()), testing::HasSubstr("render all parts on machines of a kind"))));
-    add_checkpoint(file, there, sums);
-    EXPECT_EQ(sums, written);
-    add_checkpoint(file, there, sums);
-    EXPECT_EQ(sums, (std::vector<double>{2.0, 4.0, 8.0}));
+    using Case = std::pair<CheckpointKey, const char*>;
+    for (const auto& [there, remedy] : {Case{other_machine, "render all parts on machines of a kind"},
+                                        Case{other_build, "render all parts with one build"}}) {
+        write_checkpoint(file, there, {0, 16, 100, 1.0}, written);
+        std::vector<double> sums(written.size());
+        EXPECT_THAT([&] { add_checkpoint(file, here, sums); },
+                    testing::ThrowsMessage<ReferenceError>(
+                        testing::AllOf(testing::HasSubstr(file.string()), testing::HasSubstr(remedy))));
+        add_checkpoint(file, there, sums);
+        EXPECT_EQ(sums, written);
+        add_checkpoint(file, there, sums);
+        EXPECT_EQ(sums, (std::vector<double>{2.0, 4.0, 8.0}));
+    }
+}
+
+// The key that runs use holds the hash of this build.
+TEST(CheckpointKey, HoldsTheBuild) {
+    const Scene scene = make_cornell();
+    const auto key = CheckpointKey::of(scene, {}, View(scene.cameras[0], 4, 4), settings_for({"ao"}, 2), 5);
+    EXPECT_EQ(key.embree, 5u);
+    EXPECT_NE(key.integrator, 0u);
+    EXPECT_THAT(std::string(integrator_hash()), testing::MatchesRegex("[0-9a-f]{16}"));
 }
 
 // A processor without AVX-512 has no packets of sixteen, one without AVX none of eight: there, Embree does not look at
