@@ -123,7 +123,8 @@ void write_figures(const RunResults& results, const std::filesystem::path& folde
 RunResults run_comparison(const RunOptions& run_options, const CommonOptions& common, Experiment experiment) {
     const SceneFinder finder(common.scenes_dirs);
     print_question(experiment.title, experiment.question);
-    for (const std::string& scene : leave_out_absent_scenes(experiment, finder)) fmt::print("left out: {}\n", scene);
+    for (const LeftOutScene& scene : leave_out_absent_scenes(experiment, finder))
+        fmt::print("left out: {}\n", scene.message);
     require_effects_in_scenes(experiment, finder);
     fmt::print("{}\n", describe_disk_use(disk_use(experiment, finder, run_options.write_frames), run_options.cache_dir,
                                          run_options.output));

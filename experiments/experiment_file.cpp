@@ -316,21 +316,31 @@ Experiment parse_experiment(const ConfigValue& table, const std::filesystem::pat
 
 Experiment load_experiment(const std::filesystem::path& file) { return parse_experiment(read_config(file), file); }
 
-std::vector<std::string> leave_out_absent_scenes(Experiment& experiment, const SceneFinder& finder) {
-    std::vector<std::string> left_out;
+std::vector<LeftOutScene> leave_out_absent_scenes(Experiment& experiment, const SceneFinder& finder) {
+    std::vector<LeftOutScene> left_out;
+    const auto leave_out = [&](const std::string& scene, const char* message, const std::string& kept) {
+        const std::filesystem::path path = scene;
+        left_out.push_back({fmt::format("{}: {}", scene, message),
+                            fmt::format("{}: {}", path.is_absolute() ? path.filename().string() : scene, kept)});
+        return true;
+    };
     std::erase_if(experiment.scenes, [&](const ExperimentScene& scene) {
         if (!scene.optional) return false;
         try {
             finder.load(scene.scene);
             return false;
+        } catch (const MissingSceneFile& error) {
+            return leave_out(scene.scene, error.what(), error.without_folders());
         } catch (const SceneError& error) {
-            left_out.push_back(fmt::format("{}: {}", scene.scene, error.what()));
-            return true;
+            return leave_out(scene.scene, error.what(),
+                             "it cannot be loaded; 'plumbline scenes' with its name and --scenes-dir says why");
         }
     });
     if (experiment.scenes.empty()) {
+        std::vector<std::string> messages;
+        for (const LeftOutScene& scene : left_out) messages.push_back(scene.message);
         throw SceneError(fmt::format("{}: all of its scenes are optional, and none is here: {}",
-                                     experiment.file.string(), fmt::join(left_out, "; ")));
+                                     experiment.file.string(), fmt::join(messages, "; ")));
     }
     return left_out;
 }

@@ -54,7 +54,7 @@ struct ExperimentMeasures {
 
 struct ExperimentTiming {
     int warm_up = 1;      // frames rendered before the clock runs
-    int repetitions = 7;  // frames timed per method, interleaved
+    int repetitions = 7;  // frames timed per method, interleaved; along a path at least (method_timing.h)
 };
 
 // Where a method stands on a curve of methods that differ in one parameter.
@@ -124,9 +124,14 @@ MethodSelection read_methods(ConfigReader& reader, const std::vector<std::string
 Experiment parse_experiment(const ConfigValue& table, const std::filesystem::path& file, const MethodFiles& kept = {});
 Experiment load_experiment(const std::filesystem::path& file);
 
-// Takes those optional scenes out that cannot be loaded, and returns one line for each: its name and the reason. Throws
-// SceneError where none would be left.
-std::vector<std::string> leave_out_absent_scenes(Experiment& experiment, const SceneFinder& finder);
+// A scene that is left out: its name and the reason, as one line.
+struct LeftOutScene {
+    std::string message;  // with all that helps on this machine
+    std::string kept;     // without any folder of it, for files that are read elsewhere
+};
+
+// Takes those optional scenes out that cannot be loaded. Throws SceneError where none would be left.
+std::vector<LeftOutScene> leave_out_absent_scenes(Experiment& experiment, const SceneFinder& finder);
 
 // Throws ConfigError for a parameter that the experiment's file sets and that nothing in any of the scenes is concerned
 // with, or that a scene overrides and nothing in that scene is: light without lights, reflections without anything

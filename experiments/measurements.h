@@ -18,7 +18,7 @@ struct Measurements {
     std::string key;           // of what was measured with what (reproduction_key.h)
     std::vector<Cell> cells;
     std::vector<PictureSet> pictures;   // files relative to the folder `run` beside the kept file
-    std::vector<std::string> left_out;  // scenes that are not here, with the reason
+    std::vector<std::string> left_out;  // scenes that are not here, with the reason; without folders of this machine
     std::vector<CellFailure> failures;
 };
 

@@ -90,7 +90,8 @@ Measurements run_comparison(const Reproduction& reproduction, const SceneFinder&
     Experiment experiment = parse_experiment(reproduction.table, reproduction.file);
     experiment.name = reproduction.name;
     Measurements measurements;
-    measurements.left_out = leave_out_absent_scenes(experiment, finder);
+    for (LeftOutScene& scene : leave_out_absent_scenes(experiment, finder))
+        measurements.left_out.push_back(std::move(scene.kept));
     require_effects_in_scenes(experiment, finder);
     if (quick) make_quick(experiment);
     RunOptions recorded = options;

@@ -53,12 +53,9 @@ std::filesystem::path find_file(const std::string& wanted, const std::string& wa
     std::vector<std::string> looked_in;
     for (const std::filesystem::path& folder : folders) {
         if (std::filesystem::is_regular_file(folder / wanted)) return folder / wanted;
-        looked_in.push_back(fmt::format("'{}'", folder.empty() ? "." : folder.string()));
+        looked_in.push_back(folder.empty() ? "." : folder.string());
     }
-    throw SceneError(
-        fmt::format("scene '{}': '{}' not found (looked in {}). Name the folder that holds it with --scenes-dir "
-                    "or PLUMBLINE_SCENES",
-                    wanted_by, wanted, fmt::join(looked_in, ", ")));
+    throw MissingSceneFile(wanted_by, wanted, looked_in);
 }
 
 ImportOptions read_import_options(TomlReader reader) {

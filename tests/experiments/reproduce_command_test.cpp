@@ -94,6 +94,19 @@ TEST_F(ReproduceCommand, WritesFiguresAsSvgPngAndCsvAndGoesOnBehindAnExperimentT
     EXPECT_THAT(written("run/results.json"), HasSubstr("Which errs less?")) << "the run can be repeated from it";
 }
 
+TEST_F(ReproduceCommand, ItsReadmeNamesASceneThatIsNotHereWithoutTheFoldersOfThisMachine) {
+    write("lamp.toml", "mesh = \"lamp.obj\"\n");
+    write("trial.toml", std::string(experiment) + "[[scenes]]\nscene = \"lamp.toml\"\noptional = true\n");
+    const ProgramRun run = reproduce({file("trial.toml"), "--scenes-dir", folder_.path.string()});
+    EXPECT_EQ(run.exit_code, 0) << run.output;
+    const std::string readme = written("README.md");
+    const std::size_t start = readme.find("\nLeft out: lamp.toml: ");
+    ASSERT_NE(start, std::string::npos) << readme;
+    EXPECT_THAT(
+        readme.substr(start, readme.find('\n', start + 1) - start),
+        AllOf(HasSubstr("'lamp.obj' not found"), HasSubstr("--scenes-dir"), Not(HasSubstr(folder_.path.string()))));
+}
+
 TEST_F(ReproduceCommand, WhatWasFinishedBeforeIsNotMeasuredAgain) {
     ASSERT_EQ(reproduce({file("trial.toml")}).exit_code, 0);
     // No clock would tell it: what is measured again would not show it.

@@ -30,6 +30,7 @@ namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 constexpr const char* experiment_text = R"(
 title = "A trial"
@@ -139,13 +140,39 @@ TEST(OptionalScenes, AreLeftOutWithTheReasonUnlessNoneIsLeft) {
     experiment.scenes.resize(2);
     experiment.scenes[0].scene = "cornell";
     experiment.scenes[1].scene = "nowhere/missing.toml", experiment.scenes[1].optional = true;
-    const std::vector<std::string> left_out = leave_out_absent_scenes(experiment, SceneFinder({}));
+    const std::vector<LeftOutScene> left_out = leave_out_absent_scenes(experiment, SceneFinder({}));
     ASSERT_EQ(left_out.size(), 1u);
-    EXPECT_THAT(left_out[0], HasSubstr("nowhere/missing.toml: "));
+    EXPECT_THAT(left_out[0].message, HasSubstr("nowhere/missing.toml: "));
+    EXPECT_THAT(left_out[0].kept, HasSubstr("nowhere/missing.toml: "));
     ASSERT_EQ(experiment.scenes.size(), 1u);
     experiment.scenes[0].scene = "nowhere/missing.toml", experiment.scenes[0].optional = true;
     EXPECT_THAT(message_of<SceneError>([&] { leave_out_absent_scenes(experiment, SceneFinder({})); }),
                 HasSubstr("all of its scenes are optional"));
+}
+
+TEST(OptionalScenes, WhatIsKeptOfThemNamesTheRemedyAndNoFolder) {
+    const TemporaryFolder folder;
+    const std::string here = folder.path.string();
+    folder.write("lamp.toml", "mesh = \"lamps/lamp.obj\"\n");
+    folder.write("broken.toml", "mesh = 1\n");
+    Experiment experiment;
+    experiment.scenes.resize(5);
+    experiment.scenes[0].scene = "cornell";
+    experiment.scenes[1].scene = "dragon", experiment.scenes[2].scene = "lamp.toml";
+    experiment.scenes[3].scene = here + "/lamp.toml", experiment.scenes[4].scene = "broken.toml";
+    for (std::size_t i = 1; i < 5; ++i) experiment.scenes[i].optional = true;
+    const std::vector<LeftOutScene> left_out = leave_out_absent_scenes(experiment, SceneFinder({folder.path}));
+    ASSERT_EQ(left_out.size(), 4u);
+    for (const LeftOutScene& scene : left_out) {
+        EXPECT_THAT(scene.message, HasSubstr(here));
+        EXPECT_THAT(scene.kept, AllOf(HasSubstr("--scenes-dir"), Not(HasSubstr(here))));
+    }
+    EXPECT_THAT(left_out[0].kept, testing::StartsWith("dragon: scene 'dragon.toml': "));
+    EXPECT_EQ(left_out[1].kept,
+              "lamp.toml: scene 'lamp.toml': 'lamps/lamp.obj' not found. Name the folder that holds it with "
+              "--scenes-dir or PLUMBLINE_SCENES");
+    EXPECT_EQ(left_out[2].kept, left_out[1].kept);
+    EXPECT_THAT(left_out[3].kept, testing::StartsWith("broken.toml: it cannot be loaded"));
 }
 
 // Two views, three methods of which two make a curve.
