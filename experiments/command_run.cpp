@@ -139,8 +139,9 @@ RunResults run_comparison(const RunOptions& run_options, const CommonOptions& co
     fmt::print("\n{} truths ({} of them from the cache), {} on {}, {:.0f} s\n", results.references.size(), cached,
                results.gl_renderer, results.system.cpu, results.seconds);
     print_failures(results.failures, "cell");
-    fmt::print("\nTable   {}\nNumbers {}\nPage    {}\n", (run_options.output / "results.csv").string(),
-               (run_options.output / "results.json").string(), (run_options.output / "index.html").string());
+    fmt::print("\nTable   {}\nRegions {}\nNumbers {}\nPage    {}\n", (run_options.output / "results.csv").string(),
+               (run_options.output / "regions.csv").string(), (run_options.output / "results.json").string(),
+               (run_options.output / "index.html").string());
     write_figures(results, run_options.output);
     if (results.interrupted) fmt::print("\nInterrupted: the same command goes on where this one stopped.\n");
     return results;

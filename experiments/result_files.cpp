@@ -1,19 +1,16 @@
 #include "experiments/result_files.h"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
-#include "experiments/no_value.h"
 #include "experiments/page.h"
 #include "experiments/run_json.h"
 #include "frames/atomic_file.h"
 #include "metrics/comparison.h"
 #include "metrics/gbuffer_fidelity.h"
-#include "metrics/regions.h"
 #include "rasterizer/pass_timer.h"
 
 namespace plumb {
@@ -51,9 +48,6 @@ Json measures_json(const std::vector<std::pair<std::string, double>>& measures) 
     for (const auto& [name, value] : measures) json[name] = number_json(value);
     return json;
 }
-
-// What the CSV file has of every region, beside the mean squared error and flicker; the JSON file has all.
-constexpr std::array region_measures = {"mae", "bias", "psnr", "ssim", "flip", "median", "p95", "p99"};
 
 void add_path(const ResultRow& row, Json& json) {
     if (row.stability) json["stability"] = stability_json(*row.stability);
@@ -176,6 +170,27 @@ Json ladder_json(const Waterfall& waterfall) {
 
 std::string csv_number(double value) { return std::isnan(value) ? "" : fmt::format("{:.9g}", value); }
 
+// What both CSV files begin their lines with.
+constexpr const char* row_columns = "scene,view,path,plane,truth,method";
+
+std::string row_names(const ResultRow& row) {
+    return fmt::format("{},{},{},{},{},{}", csv_text(row.scene), csv_text(row.view), csv_text(row.path),
+                       csv_text(row.plane), csv_text(row.truth), csv_text(row.method));
+}
+
+// Each with a comma before it.
+std::string columns(const std::vector<std::string>& names) { return fmt::format(",{}", fmt::join(names, ",")); }
+
+std::string values(const std::vector<std::string>& names, const std::vector<std::pair<std::string, double>>& measures) {
+    std::string text;
+    for (const std::string& name : names) text.append(",").append(csv_number(measure_named(measures, name)));
+    return text;
+}
+
+std::string stability_values(const std::optional<PathStabilityResult>& stability) {
+    return values(stability_names(), stability ? stability->measures() : std::vector<std::pair<std::string, double>>{});
+}
+
 }  // namespace
 
 std::string csv_text(const std::string& text) {
@@ -187,48 +202,34 @@ std::string csv_text(const std::string& text) {
 }
 
 std::string print_csv(const RunResults& results) {
-    std::string text =
-        "scene,view,path,plane,truth,method,curve,curve_parameter,curve_value,oracle_layers,"
-        "path_tracer_samples,measured,reference_samples,seeds,mse_lower_over_seeds,mse_upper_over_seeds";
-    for (const std::string& name : measure_names()) text.append(",").append(name);
-    for (const char* measure : {"unbiased_mse", "flicker"}) {
-        for (const std::string& region : region_names()) text += fmt::format(",{}_{}", measure, region);
-    }
-    for (const char* measure : region_measures) {
-        for (const std::string& region : region_names()) text += fmt::format(",{}_{}", measure, region);
-    }
-    for (const std::string& name : stability_names()) text.append(",").append(name);
-    for (const std::string& name : fidelity_names()) text.append(",").append(name);
-    text +=
-        ",milliseconds,milliseconds_lower_quartile,milliseconds_upper_quartile,repetitions,gbuffer_bytes_per_pixel,"
-        "refusal\n";
+    std::string text = fmt::format(
+        "{},curve,curve_parameter,curve_value,oracle_layers,path_tracer_samples,measured,reference_samples,seeds,"
+        "mse_lower_over_seeds,mse_upper_over_seeds{}{}{},milliseconds,milliseconds_lower_quartile,"
+        "milliseconds_upper_quartile,repetitions,gbuffer_bytes_per_pixel,refusal\n",
+        row_columns, columns(measure_names()), columns(stability_names()), columns(fidelity_names()));
     for (const ResultRow& row : results.rows) {
-        text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", csv_text(row.scene), csv_text(row.view),
-                            csv_text(row.path), csv_text(row.plane), csv_text(row.truth), csv_text(row.method),
-                            csv_text(row.curve), csv_text(row.curve_parameter),
-                            row.curve.empty() ? "" : csv_number(row.curve_value),
-                            row.oracle_layers >= 0 ? fmt::format("{}", row.oracle_layers) : "", row.path_tracer_samples,
-                            row.measured ? 1 : 0, row.reference_samples, row.seeds, csv_number(row.seeds_mse_lower),
-                            csv_number(row.seeds_mse_upper));
-        for (const auto& [name, value] : row.measures) text.append(",").append(csv_number(value));
-        const auto add_regions = [&](const auto& value_of) {
-            for (const std::string& name : region_names()) {
-                const auto region = std::ranges::find(row.regions, name, &RegionError::region);
-                text.append(",").append(region == row.regions.end() ? "" : csv_number(value_of(*region)));
-            }
-        };
-        add_regions([](const RegionError& region) { return region.mse; });
-        add_regions(
-            [](const RegionError& region) { return region.stability ? region.stability->flicker.value : no_value; });
-        for (const char* measure : region_measures)
-            add_regions([&](const RegionError& region) { return measure_named(region.measures, measure); });
-        for (const std::string& name : stability_names())
-            text.append(",").append(csv_number(row.stability ? row.stability->measure(name) : no_value));
-        for (const std::string& name : fidelity_names())
-            text.append(",").append(csv_number(measure_named(row.fidelity, name)));
-        text += fmt::format(",{},{},{},{},{},{}\n", csv_number(row.timing.median),
-                            csv_number(row.timing.lower_quartile), csv_number(row.timing.upper_quartile),
-                            row.timing.repetitions, row.gbuffer_bytes_per_pixel, csv_text(row.refusal));
+        text += fmt::format(
+            "{},{},{},{},{},{},{},{},{},{},{}{}{}{},{},{},{},{},{},{}\n", row_names(row), csv_text(row.curve),
+            csv_text(row.curve_parameter), row.curve.empty() ? "" : csv_number(row.curve_value),
+            row.oracle_layers >= 0 ? fmt::format("{}", row.oracle_layers) : "", row.path_tracer_samples,
+            row.measured ? 1 : 0, row.reference_samples, row.seeds, csv_number(row.seeds_mse_lower),
+            csv_number(row.seeds_mse_upper), values(measure_names(), row.measures), stability_values(row.stability),
+            values(fidelity_names(), row.fidelity), csv_number(row.timing.median),
+            csv_number(row.timing.lower_quartile), csv_number(row.timing.upper_quartile), row.timing.repetitions,
+            row.gbuffer_bytes_per_pixel, csv_text(row.refusal));
+    }
+    return text;
+}
+
+std::string print_regions_csv(const RunResults& results) {
+    std::string text = fmt::format("{},region,pixels,measured{}{}\n", row_columns, columns(measure_names()),
+                                   columns(stability_names()));
+    for (const ResultRow& row : results.rows) {
+        for (const RegionError& region : row.regions) {
+            text += fmt::format("{},{},{},{}{}{}\n", row_names(row), csv_text(region.region), region.pixels,
+                                region.measured ? 1 : 0, values(measure_names(), region.measures),
+                                stability_values(region.stability));
+        }
     }
     return text;
 }
@@ -261,12 +262,12 @@ std::string print_json(const RunResults& results) {
     for (const Waterfall& waterfall : results.waterfalls) json["ladders"].push_back(ladder_json(waterfall));
     json["rows"] = Json::array();
     for (const ResultRow& row : results.rows) json["rows"].push_back(row_json(row));
-    // Bytes that are no UTF-8 (a file name) are replaced rather than losing all results.
-    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    return print_json_lines(json);
 }
 
 void write_result_files(const RunResults& results, const std::filesystem::path& folder) {
     write_text_atomically(folder / "results.csv", print_csv(results));
+    write_text_atomically(folder / "regions.csv", print_regions_csv(results));
     write_text_atomically(folder / "results.json", print_json(results));
     write_text_atomically(folder / "index.html", print_page(results, folder));
 }

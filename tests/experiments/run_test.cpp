@@ -110,6 +110,11 @@ TEST_F(Run, WritesARowForEveryCellOfTheSceneThatWorks) {
     EXPECT_EQ(json["experiment"]["resolution"], nlohmann::json({64, 36}));
     const std::string csv = text_of(folder_->path / "first/results.csv");
     EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(csv, '\n')), json["rows"].size() + 1);
+    std::size_t regions = 0;
+    for (const auto& row : json["rows"]) regions += row.value("regions", nlohmann::json::object()).size();
+    EXPECT_GT(regions, json["rows"].size());
+    const std::string regions_csv = text_of(folder_->path / "first/regions.csv");
+    EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(regions_csv, '\n')), regions + 1);
 }
 
 TEST_F(Run, TheOracleKnowsBetterThanTheMethodsAndSweepsTellTheirPoints) {
