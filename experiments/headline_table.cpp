@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "experiments/ratio_text.h"
 #include "experiments/result_table.h"
 #include "experiments/row_groups.h"
 #include "experiments/summary.h"
@@ -56,9 +57,12 @@ std::string ratio_of(const RowGroup& group, const std::string& name, const std::
     const RowRatio found = ratio_between(group, name, base, quantity);
     const RatioSummary& ratio = found.ratio;
     if (ratio.count == 0) return "-";
-    std::string text = fmt::format("{:.2f}", ratio.mean);
-    if (ratio.count > 1) text += fmt::format(" [{:.2f}, {:.2f}]", ratio.lower, ratio.upper);
-    return with_count(text, group, ratio.count, ratio.count + found.refused);
+    const int all = ratio.count + found.refused;
+    const RatioText text = print_ratio(ratio);
+    if (ratio.has_interval())
+        return with_count(fmt::format("{} [{}, {}]", text.mean, text.lower, text.upper), group, ratio.count, all);
+    return fmt::format("{} ({}{}: no interval)", text.mean,
+                       ratio.count == all ? "" : fmt::format("{} of ", ratio.count), group.count(all));
 }
 
 class Headline {
@@ -128,9 +132,9 @@ private:
         for (const std::string& sentence : summarise(results_)) text += fmt::format("- {}\n", sentence);
         return text +
                fmt::format(
-                   "\nGeometric means and, in brackets, 95 % intervals over views or paths; of an oracle, the best "
-                   "that any method could make of what so many layers hold. Counts in brackets: the truth was too "
-                   "noisy for a statement about the rest. {}x{}, {} on {}; `{}`, {}{}.\n",
+                   "\nGeometric means and, in brackets, 95 % intervals over views or paths, where there are three at "
+                   "least; of an oracle, the best that any method could make of what so many layers hold. Counts in "
+                   "brackets: the truth was too noisy for a statement about the rest. {}x{}, {} on {}; `{}`, {}{}.\n",
                    experiment.width, experiment.height, results_.gl_renderer, results_.system.cpu, results_.command,
                    results_.started, experiment.quick ? ", a trial run that proves nothing" : "");
     }

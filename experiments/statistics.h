@@ -13,6 +13,10 @@ struct RatioSummary {
     double lower = 1.0, upper = 1.0;  // 95 % interval of the mean; infinite to both sides for a single ratio
     int count = 0;
     int below_one = 0;
+
+    // Whether the interval is to be told. That of two has a single degree of freedom, and a t of 12.7: it says [0.03,
+    // 112], that is, that two are too few.
+    bool has_interval() const { return count >= 3; }
 };
 
 // Student's t interval of the mean logarithm: ratios multiply, so their logarithms average. All must be positive.

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "experiments/ratio_text.h"
 #include "experiments/result_table.h"
 #include "experiments/row_groups.h"
 #include "experiments/row_measurement.h"
@@ -28,11 +29,15 @@ std::string optional_number(double value, const char* format) {
 }
 
 std::string ratio_text(const RatioSummary& ratio) {
-    if (ratio.count < 2) return fmt::format("{:.2f} times", ratio.mean);
-    return fmt::format("{:.2f} times (95 % interval {:.2f} to {:.2f})", ratio.mean, ratio.lower, ratio.upper);
+    const RatioText text = print_ratio(ratio);
+    if (ratio.has_interval())
+        return fmt::format("{} times (95 % interval {} to {})", text.mean, text.lower, text.upper);
+    return fmt::format("{} times (of {}: no interval)", text.mean, ratio.count == 1 ? "one case" : "two cases");
 }
 
-std::string verdict(const RatioSummary& error, const RatioSummary& time) {
+std::string verdict(const RatioSummary& error, const RatioSummary& time, const char* places) {
+    if (!error.has_interval())
+        return fmt::format("So few {} have no interval: they do not show that it changes the error.", places);
     if (error.upper < 1.0) {
         return time.mean > 1.0 ? fmt::format("It buys accuracy: {:.0f} % less error for {:.0f} % more time.",
                                              100.0 * (1.0 - error.mean), 100.0 * (time.mean - 1.0))
@@ -44,7 +49,7 @@ std::string verdict(const RatioSummary& error, const RatioSummary& time) {
                                  100.0 * (error.mean - 1.0), 100.0 * (1.0 - time.mean))
                    : "It costs time and loses accuracy.";
     }
-    return "The interval includes 1: these views do not show that it changes the error.";
+    return fmt::format("The interval includes 1: these {} do not show that it changes the error.", places);
 }
 
 // One method against the baseline.
@@ -61,7 +66,7 @@ std::string compare(const RowGroup& group, const std::string& method, const std:
     return text + fmt::format(" of {} over {}, lower in {} of them{}, and takes {} its time. {}", baseline,
                               group.count(error.ratio.count), error.ratio.below_one,
                               error.refused > 0 ? fmt::format(" ({} more refused)", error.refused) : "",
-                              ratio_text(time), verdict(error.ratio, time));
+                              ratio_text(time), verdict(error.ratio, time, group.paths ? "paths" : "views"));
 }
 
 // What each layer could bring to any method: the oracle with more layers against the oracle with fewer.

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "experiments/ratio_text.h"
+
 namespace plumb {
 namespace {
 
@@ -34,6 +36,22 @@ TEST(RatioSummary, ASingleRatioKnowsNoInterval) {
     const RatioSummary summary = summarise_ratios({0.8});
     EXPECT_DOUBLE_EQ(summary.mean, 0.8);
     EXPECT_TRUE(std::isinf(summary.upper));
+    EXPECT_FALSE(summary.has_interval());
+}
+
+TEST(RatioText, HasDigitsUntilNoEndIsRoundedToOne) {
+    const auto text = [](double mean, double lower, double upper, int count = 3) {
+        const RatioText ratio = print_ratio({mean, lower, upper, count, 0});
+        return ratio.mean + " " + ratio.lower + " " + ratio.upper;
+    };
+    EXPECT_EQ(text(0.97, 0.94, 1.01), "0.97 0.94 1.01");
+    EXPECT_EQ(text(0.97, 0.9412, 1.0031), "0.970 0.941 1.003");
+    EXPECT_EQ(text(1.0314, 0.99968, 1.08), "1.0314 0.9997 1.0800");
+    EXPECT_EQ(text(1.0, 1.0, 1.0), "1.00 1.00 1.00") << "no digit would show a side";
+    EXPECT_EQ(text(1.0, 1.0 - 1e-15, 1.0 + 1e-15), "1.00 1.00 1.00") << "nor here";
+    EXPECT_EQ(text(1.0, 1.0 - 1e-8, 1.0 + 1e-8), "1.000000 1.000000 1.000000");
+    EXPECT_EQ(text(1.0004, 0.5, 2.0), "1.00 0.50 2.00") << "the mean has no side to show";
+    EXPECT_EQ(text(0.5, 0.0, 112.0, 2), "0.50  ");
 }
 
 }  // namespace

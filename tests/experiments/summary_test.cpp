@@ -25,6 +25,14 @@ TEST(Summary, ClaimsNothingWhereTheIntervalIncludesOne) {
     EXPECT_THAT(summarise(results)[0], HasSubstr("do not show that it changes the error"));
 }
 
+TEST(Summary, ClaimsNothingOfTwoViews) {
+    RunResults results = sample_results();
+    std::erase_if(results.rows, [](const ResultRow& row) { return row.view == "left"; });
+    EXPECT_THAT(summarise(results)[0],
+                AllOf(HasSubstr("0.50 times (of two cases: no interval) the RMSE of one over 2 views"),
+                      HasSubstr("So few views have no interval: they do not show that it changes the error.")));
+}
+
 TEST(Summary, LeavesRefusedViewsOutAndCountsThem) {
     RunResults results = sample_results();
     results.rows[1].measured = false;
@@ -38,9 +46,9 @@ TEST(Summary, TellsOfCameraPathsWithTheirFlicker) {
     ASSERT_EQ(sentences.size(), 5u) << "views, their two pairs of oracles, paths, and theirs";
     EXPECT_THAT(sentences[3],
                 AllOf(HasSubstr("ao, along camera paths: two has 0.40 times"),
-                      HasSubstr("0.50 times (95 % interval 0.50 to 0.50) the flicker of one over 2 paths"),
-                      HasSubstr("lower in 2 of them"), HasSubstr("takes 1.50 times"),
-                      HasSubstr("do not show that it changes the error")));
+                      HasSubstr("0.50 times (95 % interval 0.50 to 0.50) the flicker of one over 3 paths"),
+                      HasSubstr("lower in 3 of them"), HasSubstr("takes 1.50 times"),
+                      HasSubstr("these paths do not show that it changes the error")));
     RunResults steady = second_layer_results();
     for (ResultRow& row : steady.rows) {
         if (row.stability) row.stability->flicker.lower = 0.0;
@@ -70,10 +78,10 @@ TEST(Summary, SetsEachOracleAgainstTheOneWithFewerLayers) {
         sentences[1],
         "In principle, ao: the best possible RMSE of 'oracle, 2 layers' is 0.50 times (95 % interval 0.50 to 0.50) "
         "that of 'oracle, 1 layer', over 3 views.");
-    EXPECT_THAT(sentences[2], AllOf(HasSubstr("'oracle, all in view' is 0.50 times"),
+    EXPECT_THAT(sentences[2], AllOf(HasSubstr("'oracle, all in view' is 0.50 times (of two cases: no interval)"),
                                     HasSubstr("that of 'oracle, 2 layers', over 2 views")));
     EXPECT_THAT(sentences[4], AllOf(HasSubstr("along camera paths: the best possible"),
-                                    HasSubstr(", its flicker 0.50 times"), HasSubstr("over 2 paths")));
+                                    HasSubstr(", its flicker 0.50 times"), HasSubstr("over 3 paths")));
     for (ResultRow& row : results.rows) row.measured = row.oracle_layers != 1;
     EXPECT_EQ(summarise(results)[1],
               "In principle, ao: no view allows a statement about 'oracle, 2 layers' against 'oracle, 1 layer'.");
