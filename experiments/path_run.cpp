@@ -15,7 +15,7 @@
 #include "experiments/row_measurement.h"
 #include "experiments/settling.h"
 #include "metrics/comparison.h"
-#include "metrics/gbuffer_fidelity.h"
+#include "metrics/fidelity_series.h"
 #include "metrics/path_stability.h"
 #include "metrics/plane_series.h"
 #include "rasterizer/pipeline.h"
@@ -26,6 +26,13 @@ namespace {
 ComparisonSettings series_settings(const Experiment& experiment) {
     ComparisonSettings settings = comparison_settings(experiment);
     settings.intervals = false;  // of single frames
+    return settings;
+}
+
+GbufferFidelitySettings fidelity_settings() {
+    GbufferFidelitySettings settings;
+    settings.intervals = false;  // of single frames
+    settings.keep_blocks = true;
     return settings;
 }
 
@@ -59,7 +66,7 @@ struct PathRun::Series {
     std::unique_ptr<Pipeline> pipeline;
     int gbuffer_bytes_per_pixel = 0;
     PlaneSeries errors;
-    std::vector<std::vector<std::pair<std::string, double>>> fidelity;  // frame by frame
+    FidelitySeries fidelity;
     PathStability stability;
     std::vector<FrameMeasure> frames;
     std::vector<Image> images;
@@ -259,7 +266,7 @@ void PathRun::add(const PlaneImage& image, int frame, const Frame& truth, const 
     const Frame test = frame_of(image);
     FrameMeasure measure{path_.start + frame / path_.frames_per_second, no_value, no_value};
     const PlaneComparison whole = std::move(series.errors.add(test, truth, regions).front());
-    series.fidelity.push_back(fidelity_of(image, truth));
+    if (const auto fidelity = fidelity_of(image, truth, fidelity_settings())) series.fidelity.add(*fidelity);
     if (whole.referenced) measure.rmse = std::sqrt(std::max(0.0, whole.referenced->mse));
     if (const std::optional<Flicker> flicker = series.stability.add(test, truth, nullptr, regions))
         measure.flicker = flicker->rms;
@@ -331,7 +338,7 @@ void PathRun::write_rows(RunResults& results) {
             if (const auto found = of_regions.find(region.region); found != of_regions.end())
                 region.stability = found->second;
         }
-        row.fidelity = fidelity_over_frames(series->fidelity);
+        if (series->fidelity.frames() > 0) row.fidelity = fidelity_measures(series->fidelity.result(), series->plane);
         row.frames = series->frames;
         row.stability = series->stability.result();
         row.timing = series->timing;

@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include "experiments/no_value.h"
-#include "metrics/gbuffer_fidelity.h"
 
 namespace plumb {
 namespace {
@@ -34,6 +33,13 @@ RegionError region_error(std::string region, std::size_t pixels, std::vector<std
     }
     result.measures = std::move(measures);
     return result;
+}
+
+// "layer2." and "normal" of "layer2.normal".
+std::pair<std::string, std::string> layer_and_plane(const std::string& plane) {
+    const auto dot = plane.rfind('.');
+    const std::size_t start = dot == std::string::npos ? 0 : dot + 1;
+    return {plane.substr(0, start), plane.substr(start)};
 }
 
 // What a method shows, seed after seed.
@@ -124,22 +130,26 @@ void add_error(const ReferencedError& error, ResultRow& row) {
     if (!row.measured) row.refusal = refusal_of(error);
 }
 
-std::vector<std::pair<std::string, double>> fidelity_of(const PlaneImage& image, const Frame& truth) {
-    const auto dot = image.plane.rfind('.');
-    const std::string layer = dot == std::string::npos ? "" : image.plane.substr(0, dot + 1);
-    const std::string name = image.plane.substr(layer.size()), depth = layer + "depth";
+std::optional<LayerFidelity> fidelity_of(const PlaneImage& image, const Frame& truth,
+                                         const GbufferFidelitySettings& settings) {
+    const auto [layer, name] = layer_and_plane(image.plane);
+    const std::string depth = layer + "depth";
     constexpr std::array<std::string_view, 4> names = {"depth", "normal", "albedo", "motion"};
-    if (std::ranges::find(names, name) == names.end() || !truth.has(depth)) return {};
+    if (std::ranges::find(names, name) == names.end() || !truth.has(depth)) return std::nullopt;
     Frame test(truth.width(), truth.height()), reference(truth.width(), truth.height());
     test.set("depth", truth.plane(depth)), reference.set("depth", truth.plane(depth));
     test.set(name, image.image), reference.set(name, truth.plane(image.plane));
-    auto measures = gbuffer_fidelity(test, reference).front().measures();
+    return std::move(gbuffer_fidelity(test, reference, settings).front());
+}
+
+std::vector<std::pair<std::string, double>> fidelity_measures(const LayerFidelity& fidelity, const std::string& plane) {
+    auto measures = fidelity.measures();
+    const bool is_depth = layer_and_plane(plane).second == "depth";
     std::erase_if(measures, [&](const auto& measure) {
+        if (std::isnan(measure.second)) return true;
         // Whether the test holds a surface its depth alone could tell.
-        return std::isnan(measure.second) || (name != "depth" && measure.first.starts_with("hit_agreement"));
+        return !is_depth && (measure.first.starts_with("hit_agreement") || measure.first.starts_with("depth_error"));
     });
-    if (name != "depth")
-        std::erase_if(measures, [](const auto& measure) { return measure.first.starts_with("depth_error"); });
     return measures;
 }
 
@@ -152,7 +162,8 @@ ResultRow measure_row(const PlaneImage& image, const Truth& truth, const std::ve
     row.gbuffer_bytes_per_pixel = image.gbuffer_bytes_per_pixel;
     row.reference_samples = truth.samples;
 
-    row.fidelity = fidelity_of(image, *truth.frame);
+    if (const auto fidelity = fidelity_of(image, *truth.frame))
+        row.fidelity = fidelity_measures(*fidelity, image.plane);
 
     const Frame reference = reference_of(truth);
     if (!image.other_seeds.empty()) {

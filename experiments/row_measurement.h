@@ -1,6 +1,7 @@
 // One row of results: an image held against a truth.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "experiments/results.h"
 #include "experiments/view_truths.h"
 #include "metrics/comparison.h"
+#include "metrics/gbuffer_fidelity.h"
 #include "metrics/plane_series.h"
 #include "metrics/regions.h"
 
@@ -27,8 +29,11 @@ ResultRow measure_row(const PlaneImage& image, const Truth& truth, const std::ve
                       const ComparisonSettings& settings);
 
 // How right a plane of the G-buffer is (metrics/gbuffer_fidelity.h). Where the plane is not the depth itself, both
-// sides are compared where the truth holds a surface, as far as the truth has its depth; empty for planes of light.
-std::vector<std::pair<std::string, double>> fidelity_of(const PlaneImage& image, const Frame& truth);
+// sides are compared where the truth holds a surface, as far as the truth has its depth; nothing for planes of light.
+std::optional<LayerFidelity> fidelity_of(const PlaneImage& image, const Frame& truth,
+                                         const GbufferFidelitySettings& settings = {});
+// The measures of that which say something of `plane`, as ResultRow has them.
+std::vector<std::pair<std::string, double>> fidelity_measures(const LayerFidelity& fidelity, const std::string& plane);
 
 // What a series of images says of a row, and of its regions.
 void add_series(std::vector<PlaneSeriesResult> results, ResultRow& row);

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "metrics/gbuffer_fidelity.h"
-
 namespace plumb {
 namespace {
 
@@ -40,9 +38,13 @@ void SequenceComparison::add(const std::string& name, const Frame& test, const F
     for (const std::string& plane : planes.common) add_plane(test, reference, plane, regions, frame);
     if (has_gbuffer(test, reference)) {
         GbufferFidelitySettings fidelity;
+        fidelity.bootstrap = settings_.comparison.referenced.bootstrap;
         fidelity.mask = settings_.comparison.referenced.mask;
-        for (const LayerFidelity& layer : gbuffer_fidelity(test, reference, fidelity))
+        fidelity.keep_blocks = true;
+        for (const LayerFidelity& layer : gbuffer_fidelity(test, reference, fidelity)) {
             frame.things.push_back({layer.layer, "", layer.measures()});
+            layers_[layer.layer].add(layer);
+        }
     }
     whole_images_first(frame.things);
     frames_.push_back(std::move(frame));
@@ -93,21 +95,10 @@ std::vector<MeasuredThing> SequenceComparison::whole() const {
                 add_measures(thing, region->second);
         }
     }
-    for (MeasuredThing& layer : layers_over_frames()) things.push_back(std::move(layer));
+    for (const auto& [layer, series] : layers_)
+        things.push_back({layer, "", series.result(settings_.comparison.referenced.bootstrap).measures()});
     whole_images_first(things);
     return things;
-}
-
-std::vector<MeasuredThing> SequenceComparison::layers_over_frames() const {
-    std::map<std::string, std::vector<std::vector<std::pair<std::string, double>>>> frames_of;  // by layer
-    for (const MeasuredFrame& frame : frames_) {
-        for (const MeasuredThing& thing : frame.things) {
-            if (!errors_.contains(thing.name)) frames_of[thing.name].push_back(thing.measures);
-        }
-    }
-    std::vector<MeasuredThing> layers;
-    for (const auto& [layer, frames] : frames_of) layers.push_back({layer, "", fidelity_over_frames(frames)});
-    return layers;
 }
 
 }  // namespace plumb

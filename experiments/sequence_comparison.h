@@ -1,9 +1,8 @@
 // One image, or a sequence of them, held against its reference frame by frame: errors, regions, G-buffers and, where
 // the reference knows how surfaces move, stability.
 //
-// Over a sequence, measures are those of metrics/plane_series.h, with intervals over frames and blocks; of a
-// G-buffer's,
-// *_maximum are the largest of all frames, all others the means of the frames'.
+// Over a sequence, measures are those of metrics/plane_series.h and, of a G-buffer, of metrics/fidelity_series.h, with
+// intervals over frames and blocks.
 #pragma once
 
 #include <map>
@@ -14,6 +13,7 @@
 #include "experiments/measured_thing.h"
 #include "frames/frame.h"
 #include "metrics/comparison.h"
+#include "metrics/fidelity_series.h"
 #include "metrics/path_stability.h"
 #include "metrics/plane_series.h"
 #include "metrics/regions.h"
@@ -47,7 +47,6 @@ public:
 private:
     void add_plane(const Frame& test, const Frame& reference, const std::string& plane,
                    const std::vector<Region>& regions, MeasuredFrame& frame);
-    std::vector<MeasuredThing> layers_over_frames() const;
     void add_stability(const Frame& test, const Frame& reference, const std::vector<Region>& regions,
                        MeasuredThing& thing);
 
@@ -56,6 +55,7 @@ private:
     std::vector<std::string> only_in_test_, only_in_reference_;
     std::map<std::string, PlaneSeries> errors_;       // by plane
     std::map<std::string, PathStability> stability_;  // by plane
+    std::map<std::string, FidelitySeries> layers_;    // of the G-buffer, by name
     std::optional<Frame> before_;                     // the reference's position
 };
 

@@ -11,6 +11,7 @@
 #include <fmt/ranges.h>
 
 #include "frames/image_error.h"
+#include "metrics/measure_blocks.h"
 #include "metrics/pixel_errors.h"
 #include "metrics/shape.h"
 #include "metrics/surface_motion.h"
@@ -46,20 +47,16 @@ double length_of_difference(std::span<const float> a, std::span<const float> b) 
     return std::hypot(double{a[0]} - b[0], double{a[1]} - b[1]);
 }
 
-// How one plane of a layer is compared.
-struct PlaneRule {
-    std::string_view plane;
-    int channels;
+// How the errors of fidelity_planes are told, in their order, and from where on they are no agreement.
+struct ErrorRule {
     double (*error)(std::span<const float> test, std::span<const float> reference);
-    std::optional<ErrorDistribution> LayerFidelity::*result;
     double GbufferFidelitySettings::*tolerance;  // null: does not count towards agreement
 };
-constexpr PlaneRule rules[] = {
-    {"depth", 1, relative_difference, &LayerFidelity::depth, &GbufferFidelitySettings::depth_tolerance},
-    {"normal", 3, angle_degrees, &LayerFidelity::normal, &GbufferFidelitySettings::normal_tolerance},
-    {"albedo", 3, largest_difference, &LayerFidelity::albedo, &GbufferFidelitySettings::albedo_tolerance},
-    {"motion", 2, length_of_difference, &LayerFidelity::motion, nullptr},
-};
+constexpr std::array<ErrorRule, fidelity_planes.size()> rules = {
+    {{relative_difference, &GbufferFidelitySettings::depth_tolerance},
+     {angle_degrees, &GbufferFidelitySettings::normal_tolerance},
+     {largest_difference, &GbufferFidelitySettings::albedo_tolerance},
+     {length_of_difference, nullptr}}};
 
 std::string prefix_of(int layer) { return layer == 1 ? "" : fmt::format("layer{}.", layer); }
 
@@ -80,12 +77,13 @@ public:
     }
 
     LayerFidelity run() {
-        for (const PlaneRule& rule : rules) {
-            const std::string plane = fmt::format("{}{}", prefix_, rule.plane);
-            if (test_.has(plane) && reference_.has(plane)) result_.*rule.result = compare(rule, plane);
+        for (std::size_t i = 0; i < fidelity_planes.size(); ++i) {
+            const std::string plane = fmt::format("{}{}", prefix_, fidelity_planes[i].plane);
+            if (test_.has(plane) && reference_.has(plane)) compare(i, plane);
         }
         count_hits();
-        return result_;
+        if (settings_.keep_blocks) result_.blocks = std::move(blocks_);
+        return std::move(result_);
     }
 
 private:
@@ -102,15 +100,23 @@ private:
         }
     }
 
-    ErrorDistribution compare(const PlaneRule& rule, const std::string& plane) {
+    Estimate mean(const std::vector<BlockSum>& blocks) const {
+        return settings_.intervals ? bootstrap_mean(blocks, settings_.bootstrap)
+                                   : Estimate{mean_of(blocks), none, none};
+    }
+
+    void compare(std::size_t index, const std::string& plane) {
+        const FidelityPlane& kind = fidelity_planes[index];
+        const ErrorRule& rule = rules[index];
         const Image &test = test_.plane(plane), &reference = reference_.plane(plane);
         require_same_shape(test, reference, fmt::format("plane '{}'", plane));
-        if (test.channels() != rule.channels) {
+        if (test.channels() != kind.channels) {
             throw ImageError(
-                fmt::format("plane '{}' has {} channels; a G-buffer's has {}", plane, test.channels(), rule.channels));
+                fmt::format("plane '{}' has {} channels; a G-buffer's has {}", plane, test.channels(), kind.channels));
         }
-        ErrorDistribution result;
-        std::vector<BlockSum> blocks(grid_.count());
+        ErrorDistribution& result = (result_.*kind.result).emplace();
+        ErrorBlocks blocks;
+        blocks.errors.resize(grid_.count());
         Image errors(test.width(), test.height(), 1, std::numeric_limits<float>::quiet_NaN());
         for_each_pixel([&](int x, int y) {
             if (!both_hit(x, y)) return;
@@ -121,19 +127,37 @@ private:
                 return;
             }
             ++result.values;
-            blocks[grid_.block_of(x, y)].add(error);
+            blocks.errors[grid_.block_of(x, y)].add(error);
             errors.at(x, y) = static_cast<float>(error);
         });
-        result.mean = bootstrap_mean(std::move(blocks), settings_.bootstrap);
-        result.median = value_percentile(errors, 0.5);
-        result.percentile_95 = value_percentile(errors, 0.95);
-        result.percentile_99 = value_percentile(errors, 0.99);
+        result.mean = mean(blocks.errors);
         result.maximum = value_percentile(errors, 1.0);
-        return result;
+        add_percentiles(errors, blocks, result);
+        blocks_.errors.at(index) = std::move(blocks);
+    }
+
+    void add_percentiles(const Image& errors, ErrorBlocks& blocks, ErrorDistribution& result) const {
+        QuantileCounter magnitudes;
+        for (const float error : errors.values()) {
+            if (!std::isnan(error)) magnitudes.add(error);
+        }
+        blocks.magnitudes = magnitudes.curve();
+        for (std::size_t i = 0; i < error_percentiles.size(); ++i) {
+            const double level = error_percentiles[i].level, percentile = value_percentile(errors, level);
+            std::vector<BlockSum>& not_above = blocks.not_above.at(i);
+            not_above.resize(grid_.count());
+            for_each_pixel([&](int x, int y) {
+                const float error = errors.at(x, y);
+                if (!std::isnan(error)) not_above[grid_.block_of(x, y)].add(error <= percentile ? 1.0 : 0.0);
+            });
+            result.*error_percentiles[i].estimate =
+                settings_.intervals ? percentile_interval(percentile, level, mean(not_above), blocks.magnitudes)
+                                    : Estimate{percentile, none, none};
+        }
     }
 
     void count_hits() {
-        std::vector<BlockSum> hits(grid_.count()), agreeing(grid_.count());
+        blocks_.hits.resize(grid_.count()), blocks_.agreeing.resize(grid_.count());
         for_each_pixel([&](int x, int y) {
             const bool test = is_surface(test_depth_.at(x, y)), reference = is_surface(reference_depth_.at(x, y));
             ++result_.pixels;
@@ -141,11 +165,11 @@ private:
             result_.only_test += test && !reference;
             result_.only_reference += reference && !test;
             const std::size_t block = grid_.block_of(x, y);
-            hits[block].add(test == reference ? 1.0 : 0.0);
-            agreeing[block].add(test == reference && agrees_.at(x, y) != 0.0f ? 1.0 : 0.0);
+            blocks_.hits[block].add(test == reference ? 1.0 : 0.0);
+            blocks_.agreeing[block].add(test == reference && agrees_.at(x, y) != 0.0f ? 1.0 : 0.0);
         });
-        result_.hit_agreement = bootstrap_mean(std::move(hits), settings_.bootstrap);
-        result_.agreement = bootstrap_mean(std::move(agreeing), settings_.bootstrap);
+        result_.hit_agreement = mean(blocks_.hits);
+        result_.agreement = mean(blocks_.agreeing);
     }
 
     const Frame &test_, &reference_;
@@ -155,6 +179,7 @@ private:
     BlockGrid grid_;
     Image agrees_;  // 0 where a plane is off by more than its tolerance
     LayerFidelity result_;
+    LayerBlocks blocks_;
 };
 
 }  // namespace
@@ -168,17 +193,14 @@ std::vector<std::pair<std::string, double>> LayerFidelity::measures() const {
     };
     add_estimate("hit_agreement", hit_agreement);
     add_estimate("agreement", agreement);
-    const ErrorDistribution missing{{none, none, none}, none, none, none, none, 0, 0};
-    for (const auto& [name, distribution] :
-         {std::pair<std::string, const std::optional<ErrorDistribution>&>{"depth_error", depth},
-          {"normal_angle", normal},
-          {"albedo_error", albedo},
-          {"motion_error", motion}}) {
-        const ErrorDistribution& errors = distribution ? *distribution : missing;
+    constexpr Estimate no_estimate{none, none, none};
+    const ErrorDistribution missing{no_estimate, no_estimate, no_estimate, no_estimate, none, 0, 0};
+    for (const FidelityPlane& kind : fidelity_planes) {
+        const std::string name(kind.measure);
+        const ErrorDistribution& errors = this->*kind.result ? *(this->*kind.result) : missing;
         add_estimate(name + "_mean", errors.mean);
-        list.emplace_back(name + "_median", errors.median);
-        list.emplace_back(name + "_p95", errors.percentile_95);
-        list.emplace_back(name + "_p99", errors.percentile_99);
+        for (const ErrorPercentile& percentile : error_percentiles)
+            add_estimate(fmt::format("{}_{}", name, percentile.name), errors.*percentile.estimate);
         list.emplace_back(name + "_maximum", errors.maximum);
     }
     return list;
@@ -191,33 +213,6 @@ const std::vector<std::string>& fidelity_names() {
         return list;
     }();
     return names;
-}
-
-std::vector<std::pair<std::string, double>> fidelity_over_frames(
-    const std::vector<std::vector<std::pair<std::string, double>>>& frames) {
-    std::vector<std::pair<std::string, double>> result;
-    std::vector<double> counts;  // of the frames that have the measure
-    for (const auto& frame : frames) {
-        for (const auto& [name, value] : frame) {
-            const auto known = std::ranges::find(result, name, &std::pair<std::string, double>::first);
-            const auto place = static_cast<std::size_t>(known - result.begin());
-            if (known == result.end()) result.emplace_back(name, 0.0), counts.push_back(0.0);
-            if (std::isnan(value)) continue;
-            double& so_far = result[place].second;
-            so_far = !name.ends_with("maximum") ? so_far + value
-                     : counts[place] > 0.0      ? std::max(so_far, value)
-                                                : value;
-            counts[place] += 1.0;
-        }
-    }
-    for (std::size_t i = 0; i < result.size(); ++i) {
-        auto& [name, value] = result[i];
-        if (counts[i] == 0.0 || name.ends_with("_lower") || name.ends_with("_upper"))
-            value = none;
-        else if (!name.ends_with("maximum"))
-            value /= counts[i];
-    }
-    return result;
 }
 
 bool has_gbuffer(const Frame& test, const Frame& reference) { return test.has("depth") && reference.has("depth"); }

@@ -39,14 +39,17 @@ double over_series(std::string_view measure, const std::vector<double>& values) 
 
 }  // namespace
 
-MeasureSeries::MeasureSeries(SeriesOf kind)
-    : means_(all_of_kind<mean_measures.size()>(kind)), below_(all_of_kind<percentile_measures.size()>(kind)) {}
+MeasureSeries::MeasureSeries(SeriesOf kind) : means_(all_of_kind<mean_measures.size()>(kind)) {
+    for (const PercentileMeasure& percentile : percentile_measures)
+        percentiles_.emplace_back(percentile.level, longest_run(kind));
+}
 
 void MeasureSeries::add(const PlaneComparison& comparison) {
     if (!comparison.blocks) throw ImageError("a series needs comparisons that keep their blocks");
     const MeasureBlocks& blocks = *comparison.blocks;
     for (std::size_t i = 0; i < mean_measures.size(); ++i) means_[i].add(blocks.*mean_measures[i].blocks);
-    for (std::size_t i = 0; i < percentile_measures.size(); ++i) below_[i].add(blocks.below[i]);
+    for (std::size_t i = 0; i < percentile_measures.size(); ++i)
+        percentiles_[i].add(comparison.errors.*percentile_measures[i].value, blocks.below[i]);
     magnitudes_.average_in(blocks.magnitudes, members_);
     ++members_;
     const auto measures = comparison.measures();
@@ -66,8 +69,8 @@ std::vector<std::pair<std::string, double>> MeasureSeries::measures(const Bootst
     std::array<Estimate, mean_measures.size() + percentile_measures.size()> estimates;
     parallel_for(static_cast<int>(estimates.size()), [&](int i) {
         const auto place = static_cast<std::size_t>(i);
-        estimates[place] =
-            place < means_.size() ? means_[place].mean(settings) : below_[place - means_.size()].mean(settings);
+        estimates[place] = place < means_.size() ? means_[place].mean(settings)
+                                                 : percentiles_[place - means_.size()].mean(magnitudes_, settings);
     });
     MeasureIntervals intervals;
     for (std::size_t i = 0; i < mean_measures.size(); ++i) {
@@ -79,12 +82,8 @@ std::vector<std::pair<std::string, double>> MeasureSeries::measures(const Bootst
         for (double& peak : peaks) peak *= peak;
         intervals.set_mse(estimates[i], std::sqrt(mean(peaks)));
     }
-    for (std::size_t i = 0; i < percentile_measures.size(); ++i) {
-        const PercentileMeasure& percentile = percentile_measures[i];
-        intervals.set(std::string(percentile.name),
-                      percentile_interval(mean(values_of(percentile.name)), percentile.level,
-                                          estimates[mean_measures.size() + i], magnitudes_));
-    }
+    for (std::size_t i = 0; i < percentile_measures.size(); ++i)
+        intervals.set(std::string(percentile_measures[i].name), estimates[mean_measures.size() + i]);
     std::vector<std::pair<std::string, double>> result;
     for (std::size_t i = 0; i < names_.size(); ++i)
         result.emplace_back(names_[i], over_series(names_[i], that_exist(values_[i])));

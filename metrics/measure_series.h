@@ -3,8 +3,8 @@
 // Over a series, rmse and psnr follow from the mean squared error of all images (the peak of psnr from its mean
 // square); other means run over the values of all images; percentiles are means of the images'; maximum is the largest,
 // values and left_out are sums, and what has no interval is the mean of the images that have it. 95 % intervals draw
-// blocks of the image and members of the series at once (block_bootstrap.h). The unbiased measures are an ErrorSeries'
-// to tell.
+// blocks of the image and members of the series at once (block_bootstrap.h); those of percentiles are
+// percentile_series.h's. The unbiased measures are an ErrorSeries' to tell.
 #pragma once
 
 #include <array>
@@ -15,6 +15,7 @@
 
 #include "metrics/comparison.h"
 #include "metrics/error_series.h"
+#include "metrics/percentile_series.h"
 
 namespace plumb {
 
@@ -36,8 +37,8 @@ private:
     std::vector<std::string> names_;           // of all measures
     std::vector<std::vector<double>> values_;  // of each measure, in order of the members
     std::array<BlockSeries, mean_measures.size()> means_;
-    std::array<BlockSeries, percentile_measures.size()> below_;
-    QuantileCurve magnitudes_;  // mean over the members
+    std::vector<PercentileSeries> percentiles_;  // in order of percentile_measures
+    QuantileCurve magnitudes_;                   // mean over the members
 };
 
 }  // namespace plumb

@@ -107,6 +107,8 @@ TEST(SequenceComparison, MeasuresRegionsAndGbuffers) {
     EXPECT_EQ(find(whole, "ao@rest").measure("rmse"), 0.0);
     EXPECT_NEAR(find(whole, "layer1").measure("depth_error_mean"), 0.01, float32);
     EXPECT_EQ(find(whole, "layer1").measure("agreement"), 0.0);
+    EXPECT_NEAR(find(whole, "layer1").measure("depth_error_p95_lower"), 0.01, 1e-5) << "a thousandth of it at most";
+    EXPECT_EQ(find(whole, "layer1").measure("hit_agreement_upper"), 1.0);
     EXPECT_THROW(find(whole, "ao@newly_seen"), std::out_of_range) << "nothing is newly seen";
     EXPECT_TRUE(whole.front().region.empty());
     EXPECT_FALSE(whole.back().region.empty());

@@ -79,6 +79,11 @@ TEST(PlaneSeries, IntervalsCoverWhatChangesFromMemberToMember) {
     EXPECT_NEAR(named(whole, "mae"), 0.25, float32);
     EXPECT_NEAR(named(whole, "mae_lower"), 0.25 - 1.96 * 0.056, 0.03);
     EXPECT_NEAR(named(whole, "mae_upper"), 0.25 + 1.96 * 0.056, 0.03);
+    for (const std::string name : {"median", "p95", "p99"}) {
+        EXPECT_NEAR(named(whole, name), 0.25, float32);
+        EXPECT_NEAR(named(whole, name + "_lower"), 0.25 - 1.96 * 0.056, 0.03) << name;
+        EXPECT_NEAR(named(whole, name + "_upper"), 0.25 + 1.96 * 0.056, 0.03) << name;
+    }
     EXPECT_NEAR(named(whole, "rmse"), std::sqrt(0.075), float32);
     EXPECT_LT(named(whole, "rmse_lower"), named(whole, "rmse"));
     EXPECT_LT(named(whole, "psnr_lower"), -10 * std::log10(0.075));
