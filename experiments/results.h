@@ -56,7 +56,7 @@ struct ResultRow {
     double seeds_mse_lower = no_value,
            seeds_mse_upper = no_value;                         // for this very view, over seeds alone; NaN for one seed
     std::vector<std::pair<std::string, Estimate>> over_seeds;  // likewise, of the measures; empty for one seed
-    double psnr = 0.0, ssim = 0.0;                             // NaN where there is none
+    double psnr = 0.0, ssim = 0.0;                             // NaN where there is none; psnr free of noise as mse is
     double noise_mse = 0.0;                                    // of the reference
     double data_range = 1.0;                                   // peak of PSNR, range of SSIM
     int reference_samples = 0;                                 // per pixel

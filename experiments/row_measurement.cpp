@@ -64,7 +64,9 @@ void add_seeds(const PlaneImage& image, const Frame& reference, const std::vecto
 
 void set_measures(std::vector<std::pair<std::string, double>> measures, ResultRow& row) {
     row.measures = std::move(measures);
-    row.mse = measure_named(row.measures, "mse"), row.psnr = measure_named(row.measures, "psnr");
+    row.mse = measure_named(row.measures, "mse");
+    const double unbiased_psnr = measure_named(row.measures, "unbiased_psnr");
+    row.psnr = std::isnan(unbiased_psnr) ? measure_named(row.measures, "psnr") : unbiased_psnr;
     row.ssim = measure_named(row.measures, "ssim"), row.data_range = measure_named(row.measures, "data_range");
     row.mse_lower = measure_named(row.measures, "mse_lower"), row.mse_upper = measure_named(row.measures, "mse_upper");
     row.seeds_mse_lower = row.seeds_mse_upper = no_value;

@@ -86,7 +86,10 @@ Cell measure_cell(const char* title, const char* measure) {
 std::vector<Cell> error_cells() {
     return {{"RMSE [95 %]", error_with_interval},
             measure_cell("bias", "bias"),
-            measure_cell("PSNR", "psnr"),
+            {"PSNR",
+             [](const MeasuredThing& thing) {
+                 return number(thing.measure(is_referenced(thing) ? "unbiased_psnr" : "psnr"), "{:.3g}");
+             }},
             measure_cell("SSIM", "ssim"),
             measure_cell("FLIP", "flip"),
             measure_cell("p95", "p95"),

@@ -84,10 +84,9 @@ public:
         }
         const ErrorSums sums =
             result.error_sums ? *result.error_sums : sum_errors(test, reference, plane_, grid(nullptr), mask);
-        constexpr double none = std::numeric_limits<double>::quiet_NaN();
         if (sums.values > 0) {
-            result.referenced = referenced_error_of(sums, {mean_of(sums.products), none, none}, samples,
-                                                    settings_.referenced.noise_limit);
+            result.referenced =
+                referenced_error_of(sums, means_without_intervals(sums), samples, settings_.referenced.noise_limit);
         }
     }
 
@@ -181,7 +180,7 @@ std::optional<FlipMap> flip_map(const Image& test, const Image& reference, const
 }
 
 bool has_interval(std::string_view measure) {
-    constexpr std::array<std::string_view, 16> names = {"mae",
+    constexpr std::array<std::string_view, 20> names = {"mae",
                                                         "mse",
                                                         "rmse",
                                                         "bias",
@@ -196,7 +195,11 @@ bool has_interval(std::string_view measure) {
                                                         "p95",
                                                         "p99",
                                                         "unbiased_mse",
-                                                        "unbiased_rmse"};
+                                                        "unbiased_rmse",
+                                                        "unbiased_relative_mse_pbrt",
+                                                        "unbiased_relative_mse_tev",
+                                                        "unbiased_relative_mse_falcor",
+                                                        "unbiased_psnr"};
     return std::ranges::find(names, measure) != names.end();
 }
 
@@ -205,14 +208,18 @@ void set_measure(std::vector<std::pair<std::string, double>>& measures, std::str
     if (found != measures.end()) found->second = value;
 }
 
-void set_referenced(std::vector<std::pair<std::string, double>>& measures, const ReferencedError& error) {
-    const Estimate mse{error.mse, error.lower, error.upper};
-    for (const auto& [name, estimate] :
-         {std::pair<std::string, Estimate>{"unbiased_mse", mse}, {"unbiased_rmse", mse.root()}}) {
+void set_referenced(std::vector<std::pair<std::string, double>>& measures, const ReferencedError& error, double peak) {
+    const auto set = [&](const std::string& name, const Estimate& estimate) {
         set_measure(measures, name, estimate.value);
         set_measure(measures, name + "_lower", estimate.lower);
         set_measure(measures, name + "_upper", estimate.upper);
-    }
+    };
+    const Estimate mse{error.mse, error.lower, error.upper};
+    set("unbiased_mse", mse);
+    set("unbiased_rmse", mse.root());
+    for (std::size_t i = 0; i < relative_mses.size(); ++i)
+        set(fmt::format("unbiased_{}", relative_mses[i].name), error.relative_mse[i]);
+    set("unbiased_psnr", decibels(mse, peak));
     set_measure(measures, "reference_noise_mse", error.reference_noise_mse);
     set_measure(measures, "noise_ratio", error.ratio);
     set_measure(measures, "trustworthy", error.trustworthy ? 1.0 : 0.0);
@@ -248,9 +255,11 @@ std::vector<std::pair<std::string, double>> PlaneComparison::measures() const {
     add("data_range", errors.peak);
     add("values", static_cast<double>(errors.values));
     add("left_out", static_cast<double>(errors.left_out));
-    for (const char* name : {"unbiased_mse", "unbiased_rmse", "reference_noise_mse", "noise_ratio", "trustworthy"})
+    for (const char* name :
+         {"unbiased_mse", "unbiased_rmse", "unbiased_relative_mse_pbrt", "unbiased_relative_mse_tev",
+          "unbiased_relative_mse_falcor", "unbiased_psnr", "reference_noise_mse", "noise_ratio", "trustworthy"})
         add(name, none);
-    if (referenced) set_referenced(list, *referenced);
+    if (referenced) set_referenced(list, *referenced, errors.peak);
     return list;
 }
 

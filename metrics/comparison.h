@@ -69,7 +69,8 @@ struct PlaneComparison {
     // All measures in a fixed order under fixed names, the same for every plane; NaN where one does not exist:
     // mae, mse, rmse, bias, relative_mse_pbrt, relative_mse_tev, relative_mse_falcor, psnr, ssim, ms_ssim, flip,
     // flip_first_exposure, flip_last_exposure (stops; of radiance), median, p95, p99, maximum, data_range, values,
-    // left_out, unbiased_mse, unbiased_rmse, reference_noise_mse, noise_ratio, trustworthy (1 or 0). Each that
+    // left_out, unbiased_mse, unbiased_rmse, unbiased_relative_mse_pbrt, unbiased_relative_mse_tev,
+    // unbiased_relative_mse_falcor, unbiased_psnr, reference_noise_mse, noise_ratio, trustworthy (1 or 0). Each that
     // has_interval() is followed by the ends of its 95 % interval, NAME_lower and NAME_upper.
     std::vector<std::pair<std::string, double>> measures() const;
     double measure(std::string_view name) const;  // throws ImageError that lists the names
@@ -83,8 +84,8 @@ const std::vector<std::string>& measure_names();
 // Whether a measure has an interval: all that say how far apart images are, except the maximum (measure_blocks.h).
 bool has_interval(std::string_view measure);
 
-// Replaces, among measures under these names, those that halves of the reference tell.
-void set_referenced(std::vector<std::pair<std::string, double>>& measures, const ReferencedError& error);
+// Replaces, among measures under these names, those that halves of the reference tell. `peak`: of the PSNR.
+void set_referenced(std::vector<std::pair<std::string, double>>& measures, const ReferencedError& error, double peak);
 void set_measure(std::vector<std::pair<std::string, double>>& measures, std::string_view name, double value);
 
 // FLIP at every pixel, as the settings have it of that plane; nothing where they have none.

@@ -7,6 +7,7 @@
 // it.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <string_view>
@@ -47,7 +48,8 @@ public:
 private:
     ReferencedErrorSettings settings_;
     BlockSeries products_;
-    ErrorSums sums_;              // its products stay empty
+    std::array<BlockSeries, relative_mses.size()> relative_;
+    ErrorSums sums_;              // its blocks stay empty
     std::vector<double> errors_;  // mse of each member
     int least_samples_ = 0;       // per pixel, of all references
 };

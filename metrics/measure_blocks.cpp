@@ -12,12 +12,13 @@ namespace {
 
 double square(double value) { return value * value; }
 
+}  // namespace
+
 Estimate decibels(const Estimate& mse, double peak) {
-    const auto of = [&](double x) { return 10.0 * std::log10(square(peak) / std::max(x, 0.0)); };
+    // Not std::max, which would make a zero of a NaN.
+    const auto of = [&](double x) { return 10.0 * std::log10(square(peak) / (x < 0.0 ? 0.0 : x)); };
     return {of(mse.value), of(mse.upper), of(mse.lower)};
 }
-
-}  // namespace
 
 MeasureBlocks pixel_error_blocks(const Image& test, const Image& reference, const PixelErrors& errors,
                                  const BlockGrid& grid, const Image* mask) {
@@ -43,9 +44,9 @@ MeasureBlocks pixel_error_blocks(const Image& test, const Image& reference, cons
             blocks.mae[block].add(std::abs(difference));
             blocks.mse[block].add(squared);
             blocks.bias[block].add(difference);
-            blocks.relative_mse_pbrt[block].add(squared / square(r + 0.01));
-            blocks.relative_mse_tev[block].add(squared / (square(r) + 0.01));
-            blocks.relative_mse_falcor[block].add(squared / (square(r) + 0.001));
+            blocks.relative_mse_pbrt[block].add(squared / relative_weight_pbrt(r));
+            blocks.relative_mse_tev[block].add(squared / relative_weight_tev(r));
+            blocks.relative_mse_falcor[block].add(squared / relative_weight_falcor(r));
             for (std::size_t i = 0; i < percentile_measures.size(); ++i)
                 blocks.below[i][block].add(std::abs(difference) <= errors.*percentile_measures[i].value ? 1.0 : 0.0);
         });

@@ -62,6 +62,9 @@ MeasureBlocks pixel_error_blocks(const Image& test, const Image& reference, cons
 // Of an image of one channel: its finite values at pixels that count.
 std::vector<BlockSum> block_sums(const Image& map, const BlockGrid& grid, const Image* mask = nullptr);
 
+// PSNR: 10 log10(peak^2 / mse); infinite where an unbiased estimate is not positive.
+Estimate decibels(const Estimate& mse, double peak);
+
 // Percentile `value` at `level`; `share` are the drawn shares of the errors up to it.
 Estimate percentile_interval(double value, double level, const Estimate& share, const QuantileCurve& magnitudes);
 

@@ -61,11 +61,19 @@ void MeasureSeries::add(const PlaneComparison& comparison) {
     }
 }
 
+std::vector<double> MeasureSeries::values_of(std::string_view name) const {
+    const auto found = std::ranges::find(names_, name);
+    return found == names_.end() ? std::vector<double>{}
+                                 : that_exist(values_[static_cast<std::size_t>(found - names_.begin())]);
+}
+
+double MeasureSeries::peak() const {
+    std::vector<double> squares = values_of("data_range");
+    for (double& range : squares) range *= range;
+    return std::sqrt(mean(squares));
+}
+
 std::vector<std::pair<std::string, double>> MeasureSeries::measures(const BootstrapSettings& settings) const {
-    const auto values_of = [&](std::string_view name) -> std::vector<double> {
-        const auto found = std::ranges::find(names_, name);
-        return found == names_.end() ? std::vector<double>{} : that_exist(values_[found - names_.begin()]);
-    };
     std::array<Estimate, mean_measures.size() + percentile_measures.size()> estimates;
     parallel_for(static_cast<int>(estimates.size()), [&](int i) {
         const auto place = static_cast<std::size_t>(i);
@@ -78,9 +86,7 @@ std::vector<std::pair<std::string, double>> MeasureSeries::measures(const Bootst
             intervals.set(std::string(mean_measures[i].name), estimates[i]);
             continue;
         }
-        std::vector<double> peaks = values_of("data_range");
-        for (double& peak : peaks) peak *= peak;
-        intervals.set_mse(estimates[i], std::sqrt(mean(peaks)));
+        intervals.set_mse(estimates[i], peak());
     }
     for (std::size_t i = 0; i < percentile_measures.size(); ++i)
         intervals.set(std::string(percentile_measures[i].name), estimates[mean_measures.size() + i]);

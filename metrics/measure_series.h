@@ -10,6 +10,7 @@
 #include <array>
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -27,12 +28,17 @@ public:
     void add(const PlaneComparison& comparison);
 
     std::size_t members() const { return members_; }
+    // Of psnr: the root of the images' mean square.
+    double peak() const;
     // As PlaneComparison::measures() has them.
     std::vector<std::pair<std::string, double>> measures(const BootstrapSettings& settings = {}) const;
     // Over the members alone, Student's t: of those measures that have intervals and that a mean makes sense of.
     std::vector<std::pair<std::string, Estimate>> over_members() const;
 
 private:
+    // Of the members that have the measure, in their order.
+    std::vector<double> values_of(std::string_view name) const;
+
     std::size_t members_ = 0;
     std::vector<std::string> names_;           // of all measures
     std::vector<std::vector<double>> values_;  // of each measure, in order of the members

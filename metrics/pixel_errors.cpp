@@ -58,9 +58,9 @@ PixelErrors pixel_errors(const Image& test, const Image& reference, double peak,
                 absolute += std::abs(difference);
                 signed_sum += difference;
                 squared += square(difference);
-                pbrt += square(difference) / square(r + 0.01);
-                tev += square(difference) / (square(r) + 0.01);
-                falcor += square(difference) / (square(r) + 0.001);
+                pbrt += square(difference) / relative_weight_pbrt(r);
+                tev += square(difference) / relative_weight_tev(r);
+                falcor += square(difference) / relative_weight_falcor(r);
             }
         }
     }

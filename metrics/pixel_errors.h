@@ -19,11 +19,25 @@
 // can refuse the comparison. Good for: gating and for sorting methods. Bad for: what an eye sees; see ssim.h.
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <string_view>
 
 #include "frames/image.h"
 
 namespace plumb {
+
+// w(r) of the definitions of relative MSE, by the names that measures have.
+constexpr double relative_weight_pbrt(double r) { return (r + 0.01) * (r + 0.01); }
+constexpr double relative_weight_tev(double r) { return r * r + 0.01; }
+constexpr double relative_weight_falcor(double r) { return r * r + 0.001; }
+struct RelativeMse {
+    std::string_view name;
+    double (*weight)(double reference);
+};
+inline constexpr std::array<RelativeMse, 3> relative_mses = {{{"relative_mse_pbrt", relative_weight_pbrt},
+                                                              {"relative_mse_tev", relative_weight_tev},
+                                                              {"relative_mse_falcor", relative_weight_falcor}}};
 
 struct PixelErrors {
     std::size_t values = 0;                // that were compared

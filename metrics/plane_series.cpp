@@ -33,7 +33,7 @@ std::vector<PlaneSeriesResult> PlaneSeries::results() const {
         if (part.error.members() > 0) {
             result.error = part.error.error();
             result.error_over_members = part.error.over_members();
-            set_referenced(result.measures, *result.error);
+            set_referenced(result.measures, *result.error, part.measures.peak());
         }
         results.push_back(std::move(result));
     }

@@ -21,6 +21,13 @@ void require_settings(const ReferencedErrorSettings& settings) {
     }
 }
 
+template <typename Mean>
+ErrorMeans means_of(const ErrorSums& sums, const Mean& mean) {
+    ErrorMeans means{mean(sums.products), {}};
+    for (std::size_t i = 0; i < relative_mses.size(); ++i) means.relative_mse[i] = mean(sums.relative[i]);
+    return means;
+}
+
 }  // namespace
 
 std::string half_a_of(std::string_view plane) { return fmt::format("half_a.{}", plane); }
@@ -51,6 +58,7 @@ ErrorSums sum_errors(const Image& test_a, const Image& test_b, const Image& half
     ErrorSums sums;
     sums.block_size = grid.block_size();
     sums.products.resize(grid.count());
+    for (std::vector<BlockSum>& relative : sums.relative) relative.resize(grid.count());
     for (int y = 0; y < test_a.height(); ++y) {
         for (int x = 0; x < test_a.width(); ++x) {
             if (!pixel_counts(mask, x, y)) continue;
@@ -61,7 +69,11 @@ ErrorSums sum_errors(const Image& test_a, const Image& test_b, const Image& half
                     ++sums.left_out;
                     continue;
                 }
-                sums.products[grid.block_of(x, y)].add(a * b);
+                const std::size_t block = grid.block_of(x, y);
+                const double reference = 0.5 * (double{half_a.at(x, y, c)} + half_b.at(x, y, c));
+                sums.products[block].add(a * b);
+                for (std::size_t i = 0; i < relative_mses.size(); ++i)
+                    sums.relative[i][block].add(a * b / relative_mses[i].weight(reference));
                 sums.plain += 0.25 * (a + b) * (a + b);
                 sums.noise += 0.25 * (a - b) * (a - b);
                 ++sums.values;
@@ -71,7 +83,16 @@ ErrorSums sum_errors(const Image& test_a, const Image& test_b, const Image& half
     return sums;
 }
 
-ReferencedError referenced_error_of(const ErrorSums& sums, const Estimate& mse, int reference_samples,
+ErrorMeans bootstrap_means(const ErrorSums& sums, const BootstrapSettings& settings) {
+    return means_of(sums, [&](const std::vector<BlockSum>& blocks) { return bootstrap_mean(blocks, settings); });
+}
+
+ErrorMeans means_without_intervals(const ErrorSums& sums) {
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    return means_of(sums, [](const std::vector<BlockSum>& blocks) { return Estimate{mean_of(blocks), none, none}; });
+}
+
+ReferencedError referenced_error_of(const ErrorSums& sums, const ErrorMeans& means, int reference_samples,
                                     double noise_limit) {
     if (sums.values == 0) {
         throw ImageError(
@@ -79,7 +100,8 @@ ReferencedError referenced_error_of(const ErrorSums& sums, const Estimate& mse, 
     }
     const auto count = static_cast<double>(sums.values);
     ReferencedError result;
-    result.mse = mse.value, result.lower = mse.lower, result.upper = mse.upper;
+    result.mse = means.mse.value, result.lower = means.mse.lower, result.upper = means.mse.upper;
+    result.relative_mse = means.relative_mse;
     result.plain_mse = sums.plain / count;
     result.reference_noise_mse = sums.noise / count;
     result.noise_limit = noise_limit;
@@ -103,7 +125,7 @@ ReferencedError paired_referenced_error(const Image& test_a, const Image& test_b
     require_settings(settings);
     const BlockGrid grid(test_a.width(), test_a.height(), settings.bootstrap.block_size, settings.mask);
     const ErrorSums sums = sum_errors(test_a, test_b, half_a, half_b, grid, settings.mask);
-    return referenced_error_of(sums, bootstrap_mean(sums.products, settings.bootstrap), reference_samples,
+    return referenced_error_of(sums, bootstrap_means(sums, settings.bootstrap), reference_samples,
                                settings.noise_limit);
 }
 
@@ -120,7 +142,7 @@ ReferencedError referenced_error(const Frame& method, const Frame& reference, st
     require_settings(settings);
     const BlockGrid grid(method.width(), method.height(), settings.bootstrap.block_size, settings.mask);
     const ErrorSums sums = sum_errors(method, reference, plane, grid, settings.mask);
-    return referenced_error_of(sums, bootstrap_mean(sums.products, settings.bootstrap), reference_samples,
+    return referenced_error_of(sums, bootstrap_means(sums, settings.bootstrap), reference_samples,
                                settings.noise_limit);
 }
 

@@ -20,15 +20,21 @@
 // of what has to do with half b (Ib and B). Ia and A need not be independent of each other: rendered with the same
 // seed, the noise they share even cancels, and the estimate is the steadier for it.
 //
+// The relative MSE (pixel_errors.h) divide the same products by w(R). PSNR follows from mse (measure_blocks.h). A - B,
+// which the products take off, has nothing to do with R, where both halves are equally noisy; what R's noise does to
+// the denominator stays: a share of about 3 s^2 / r^2 of the relative MSE and 6 s^4 / r^4 beside it, for a variance s^2
+// of R. That is the less, the more trustworthy the error.
+//
 // The 95 % interval is that of a block bootstrap (block_bootstrap.h). It covers both the noise and how evenly the error
 // is spread over the image.
 //
 // `trustworthy` asks for two things: the reference's noise is at most a tenth of the error (noise_limit), and the
-// interval excludes zero. A tenth, because measures which have no unbiased form (SSIM, percentiles, relative MSE, the
-// error images) see error plus noise: sqrt(1.1) inflates an RMSE by 5 %. An error of exactly zero against a noiseless
+// interval excludes zero. A tenth, because measures which have no unbiased form (SSIM, percentiles, the error
+// images) see error plus noise: sqrt(1.1) inflates an RMSE by 5 %. An error of exactly zero against a noiseless
 // reference is trusted.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -38,6 +44,7 @@
 
 #include "frames/frame.h"
 #include "metrics/block_bootstrap.h"
+#include "metrics/pixel_errors.h"
 
 namespace plumb {
 
@@ -53,9 +60,10 @@ struct ReferencedErrorSettings {
 };
 
 struct ReferencedError {
-    double mse = 0;                  // unbiased
-    double lower = 0, upper = 0;     // 95 % interval of mse
-    double plain_mse = 0;            // mean (I - R)^2, biased upwards by the noise
+    double mse = 0;                                           // unbiased
+    double lower = 0, upper = 0;                              // 95 % interval of mse
+    std::array<Estimate, relative_mses.size()> relative_mse;  // in order of relative_mses
+    double plain_mse = 0;                                     // mean (I - R)^2, biased upwards by the noise
     double reference_noise_mse = 0;  // mean variance of R; of I - R where I comes as two halves
     double ratio = 0;                // reference_noise_mse / mse; infinite where mse is not positive but the noise is
     bool trustworthy = false;
@@ -86,8 +94,9 @@ ReferencedError referenced_error(const Frame& method, const Frame& reference, st
 
 // What a referenced error is made of.
 struct ErrorSums {
-    std::vector<BlockSum> products;  // of the errors against either half, per block
-    double plain = 0, noise = 0;     // sums over all blocks
+    std::vector<BlockSum> products;                                    // of the errors against either half, per block
+    std::array<std::vector<BlockSum>, relative_mses.size()> relative;  // the same over w(R)
+    double plain = 0, noise = 0;                                       // sums over all blocks
     std::size_t values = 0, left_out = 0;
     int block_size = 0;
 };
@@ -98,8 +107,17 @@ ErrorSums sum_errors(const Image& test_a, const Image& test_b, const Image& half
 // The same of a plane of two frames, paired as referenced_error() pairs them.
 ErrorSums sum_errors(const Frame& method, const Frame& reference, std::string_view plane, const BlockGrid& grid,
                      const Image* mask = nullptr);
-// `mse` is the mean of the products with its interval. Throws ImageError where nothing was compared.
-ReferencedError referenced_error_of(const ErrorSums& sums, const Estimate& mse, int reference_samples,
+// Means of the products, plain and relative.
+struct ErrorMeans {
+    Estimate mse;
+    std::array<Estimate, relative_mses.size()> relative_mse;
+};
+ErrorMeans bootstrap_means(const ErrorSums& sums, const BootstrapSettings& settings = {});
+// Their ends are NaN.
+ErrorMeans means_without_intervals(const ErrorSums& sums);
+
+// Throws ImageError where nothing was compared.
+ReferencedError referenced_error_of(const ErrorSums& sums, const ErrorMeans& means, int reference_samples,
                                     double noise_limit);
 
 }  // namespace plumb

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <limits>
 
 #include <gmock/gmock.h>
 
@@ -27,7 +28,8 @@ TEST(Comparison, MeasuresHaveAFixedOrderAndNamesThatThresholdsCanRelyOn) {
         names, ElementsAre("mae", "mse", "rmse", "bias", "relative_mse_pbrt", "relative_mse_tev", "relative_mse_falcor",
                            "psnr", "ssim", "ms_ssim", "flip", "flip_first_exposure", "flip_last_exposure", "median",
                            "p95", "p99", "maximum", "data_range", "values", "left_out", "unbiased_mse", "unbiased_rmse",
-                           "reference_noise_mse", "noise_ratio", "trustworthy"));
+                           "unbiased_relative_mse_pbrt", "unbiased_relative_mse_tev", "unbiased_relative_mse_falcor",
+                           "unbiased_psnr", "reference_noise_mse", "noise_ratio", "trustworthy"));
 }
 
 TEST(Comparison, TellsIntervalsOfAllThatSaysHowFarImagesAreApart) {
@@ -52,6 +54,23 @@ TEST(Comparison, TellsIntervalsOfAllThatSaysHowFarImagesAreApart) {
     EXPECT_EQ(without.measure("mae"), comparison.measure("mae"));
     EXPECT_EQ(without.measure("unbiased_mse"), comparison.measure("unbiased_mse"));
     EXPECT_TRUE(std::isnan(without.measure("mae_lower")));
+}
+
+TEST(Comparison, TellsPsnrFreeOfTheReferencesNoise) {
+    Frame method(64, 64), truth(64, 64);
+    method.set("ao", Image(64, 64, 1, 0.75f));
+    truth.set("ao", Image(64, 64, 1, 0.5f));
+    truth.set("half_a.ao", Image(64, 64, 1, 0.375f)), truth.set("half_b.ao", Image(64, 64, 1, 0.625f));
+    const PlaneComparison comparison = compare_plane(method, truth, "ao").front();
+    // 0.375 times 0.125 against 0.25 squared; the peak of ao is 1.
+    EXPECT_NEAR(comparison.measure("unbiased_psnr"), -10.0 * std::log10(0.046875), 1e-9);
+    EXPECT_NEAR(comparison.measure("unbiased_psnr_lower"), -10.0 * std::log10(0.046875), 1e-9);
+    EXPECT_NEAR(comparison.measure("psnr"), -10.0 * std::log10(0.0625), 1e-9);
+    EXPECT_NEAR(comparison.measure("unbiased_relative_mse_tev"), 0.046875 / 0.26, 1e-9);
+    method.set("ao", Image(64, 64, 1, 0.5f));
+    EXPECT_EQ(compare_plane(method, truth, "ao").front().measure("unbiased_psnr"),
+              std::numeric_limits<double>::infinity())
+        << "below zero: lost in the noise";
 }
 
 TEST(Comparison, OverRegionsIsThatOfTheMasksWithTheMapsOfTheWholeImage) {

@@ -44,6 +44,9 @@ TEST(ErrorSeries, IsTheMeanOfItsMembersWeighedByTheirValues) {
     EXPECT_DOUBLE_EQ(first->mse, 0.125);
     EXPECT_DOUBLE_EQ(series.add(with_plane(1.0f), truth_of(0.5f, 0.25f), "ao", 32)->mse, 0.375);
     EXPECT_DOUBLE_EQ(series.error().mse, 0.25);
+    // Over squares of the references, 0.625 and 0.375, and 0.01.
+    EXPECT_NEAR(series.error().relative_mse[1].value, 0.5 * (0.125 / 0.400625 + 0.375 / 0.150625), 1e-12);
+    EXPECT_LT(series.error().relative_mse[1].lower, series.error().relative_mse[1].value);
     EXPECT_DOUBLE_EQ(series.error().reference_noise_mse, 0.25 * 0.25 / 4);
     EXPECT_EQ(series.error().reference_samples, 32) << "the least of all frames";
     EXPECT_EQ(series.members(), 2u);

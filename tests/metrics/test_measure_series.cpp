@@ -62,6 +62,8 @@ TEST(PlaneSeries, PoolsFramesOverTheWholeImageAndOverRegions) {
     EXPECT_NEAR(named(whole, "maximum"), 0.3, float32);
     EXPECT_EQ(named(whole, "values"), 2.0 * width * height);
     EXPECT_NEAR(named(whole, "unbiased_mse"), 0.035, float32);
+    EXPECT_NEAR(named(whole, "unbiased_psnr"), -10 * std::log10(0.035), 1e-4);
+    EXPECT_NEAR(named(whole, "unbiased_relative_mse_pbrt"), 0.035 / (0.51 * 0.51), 1e-5);
     EXPECT_EQ(named(whole, "trustworthy"), 1.0);
     EXPECT_EQ(left.region, "border");
     EXPECT_EQ(left.pixels, 2u * width / 2 * height);

@@ -1,3 +1,4 @@
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -44,6 +45,49 @@ TEST(ReferencedError, MatchesTwoPixelsComputedByHand) {
     EXPECT_DOUBLE_EQ(error.reference_noise_mse, 0.5078125);
     EXPECT_DOUBLE_EQ(error.mse, error.plain_mse - error.reference_noise_mse);
     EXPECT_FALSE(error.trustworthy);
+    // The references are 0.625 and 2.
+    EXPECT_NEAR(error.relative_mse[0].value, 0.5 * (0.125 / (0.635 * 0.635) - 1.0 / (2.01 * 2.01)), 1e-12);
+    EXPECT_NEAR(error.relative_mse[1].value, 0.5 * (0.125 / (0.390625 + 0.01) - 1.0 / 4.01), 1e-12);
+    EXPECT_NEAR(error.relative_mse[2].value, 0.5 * (0.125 / (0.390625 + 0.001) - 1.0 / 4.001), 1e-12);
+    EXPECT_NEAR(error.relative_mse[1].lower, -1.0 / 4.01, 1e-9) << "two blocks: either may be drawn twice";
+    EXPECT_NEAR(error.relative_mse[1].upper, 0.125 / 0.400625, 1e-9);
+}
+
+TEST(ReferencedError, RelativeErrorsAreFreeOfTheNoiseToo) {
+    // Error 0.05, noise of each half 0.03, of their mean 0.021: plain relative errors are 18 % too large.
+    constexpr int draws = 300;
+    constexpr double error = 0.05, noise = 0.03 * 0.03 / 2;
+    std::array<double, relative_mses.size()> sums{}, squares{}, answers{};
+    double plain = 0.0;  // by tev's definition
+    for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < width; ++x) {
+            for (std::size_t i = 0; i < answers.size(); ++i)
+                answers[i] += error * error / relative_mses[i].weight(truth_at(x, y)) / (width * height);
+        }
+    }
+    std::mt19937 random(13);
+    ReferencedErrorSettings quick;
+    quick.bootstrap.resamples = 40;  // the interval is not looked at here
+    for (int draw = 0; draw < draws; ++draw) {
+        const Draw one = make_draw(random, static_cast<float>(error), 0.03f);
+        const ReferencedError found = referenced_error(one.test, one.half_a, one.half_b, 16, quick);
+        for (std::size_t i = 0; i < answers.size(); ++i) {
+            sums[i] += found.relative_mse[i].value;
+            squares[i] += found.relative_mse[i].value * found.relative_mse[i].value;
+        }
+        Image mean(width, height, 1);
+        for (std::size_t i = 0; i < mean.values().size(); ++i)
+            mean.values()[i] = 0.5f * (one.half_a.values()[i] + one.half_b.values()[i]);
+        plain += pixel_errors(one.test, mean, 1.0).relative_mse_tev / draws;
+    }
+    for (std::size_t i = 0; i < answers.size(); ++i) {
+        const double mean = sums[i] / draws;
+        const double standard_error = std::sqrt((squares[i] / draws - mean * mean) / (draws - 1));
+        EXPECT_LT(standard_error, 0.005 * answers[i]) << "otherwise the test proves nothing";
+        // What the denominator's noise leaves where the truth is darkest, 0.5: 3 s^2 / r^2 = 0.54 %.
+        EXPECT_NEAR(mean, answers[i], 0.0054 * answers[i] + 4 * standard_error) << relative_mses[i].name;
+    }
+    EXPECT_GT(plain, (1.0 + 0.9 * noise / (error * error)) * answers[1]);
 }
 
 TEST(ReferencedError, IsFreeOfTheNoiseThatThePlainErrorHas) {
