@@ -82,5 +82,26 @@ TEST(RenderCommand, DeepWithoutDepthIsRefusedWithTheRemedy) {
     EXPECT_THAT(run.output, HasSubstr("depth"));
 }
 
+// What is set for this very scene is refused; what a method brings along is noted.
+TEST(RenderCommand, WhatTheSceneHasNothingForIsTold) {
+    const TemporaryFolder folder;
+    const auto render = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> arguments = {
+            "render", "cornell",  "--planes",           "direct",        "--size", "16",
+            "16",     "--output", folder.path.string(), "--repetitions", "0"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return run_plumbline(arguments);
+    };
+    const ProgramRun refused = render({"--set", "direct.shadow.map_size=512"});
+    EXPECT_NE(refused.exit_code, 0);
+    EXPECT_THAT(refused.output, testing::AllOf(HasSubstr("'direct.shadow.map_size=512'"),
+                                               HasSubstr("nothing in scene 'cornell' is concerned")));
+    folder.write("mine.toml", "name = \"mine\"\ndirect.shadow.map_size = 512\nao.bias = 0.02\n");
+    const ProgramRun noted = render({"--method", (folder.path / "mine.toml").string()});
+    EXPECT_EQ(noted.exit_code, 0) << noted.output;
+    EXPECT_THAT(noted.output, testing::AllOf(HasSubstr("note: direct.shadow.map_size = 512 has no effect"),
+                                             testing::Not(HasSubstr("ao.bias"))));
+}
+
 }  // namespace
 }  // namespace plumb
