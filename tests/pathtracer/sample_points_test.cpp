@@ -25,15 +25,21 @@ TEST(SampleLanes, HoldThePointsOfSingleSamplesBitForBit) {
                     sequence.start_samples(firsts[run], counts[run], begin, lanes);
                 }
                 for (const std::uint32_t dimension : {0u, 1u, 2u, 517u, 65540u, 1u << 20, 0xffffffffu}) {
-                    Lanes<float> x, y, number;
+                    Lanes<float> x, y, number, second;
+                    Lanes<std::uint32_t> first;
                     sample_points(lanes, most_lanes, dimension, x, y);
+                    sample_points(lanes, most_lanes, dimension, first, second);
                     sample_numbers(lanes, most_lanes, dimension, number);
                     for (int run = 0, lane = 0; run < 4; ++run) {
                         for (int i = 0; i < counts[run]; ++i, ++lane) {
                             sequence.start_sample(firsts[run] + i);
                             const glm::vec2 point = sequence.point(dimension);
                             const bool equal = x[lane] == point.x && y[lane] == point.y && number[lane] == point.x;
-                            different += equal ? 0 : 1;
+                            // With all bits of the first number, of which the others keep 24.
+                            const FixedPoint fixed = fixed_sobol_point(sequence.index(), mix_word(dimension));
+                            const bool equal_in_full = first[lane] == fixed.x && second[lane] == point.y &&
+                                                       to_unit_interval(first[lane]) == point.x;
+                            different += equal && equal_in_full ? 0 : 1;
                             EXPECT_TRUE(point.x >= 0.0f && point.x < 1.0f && point.y >= 0.0f && point.y < 1.0f);
                         }
                     }
