@@ -18,10 +18,6 @@ Ray centre_ray(const View& view, int x, int y) {
     return view.pixel_ray(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
 }
 
-std::size_t pixel_index(const View& view, int x, int y) {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(view.width()) + static_cast<std::size_t>(x);
-}
-
 // The hits of all pixels; `nearest(index, scale)` is the distance from which on hits count, scale that of
 // depth_per_distance.
 template <typename Nearest>

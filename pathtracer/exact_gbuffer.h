@@ -1,6 +1,7 @@
 // The G-buffer as rays find it: exact, layer by layer, through pixel centres.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -10,6 +11,11 @@
 #include "pathtracer/traced_scene.h"
 
 namespace plumb {
+
+// Where pixels stand that lie row by row.
+inline std::size_t pixel_index(const View& view, int x, int y) {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(view.width()) + static_cast<std::size_t>(x);
+}
 
 // The nearest hit of each pixel's ray between the camera's planes, row by row.
 std::vector<SurfaceHit> first_layer(const TracedScene& scene, const View& view);

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 
 #include <fmt/format.h>
 
 #include "pathtracer/exact_gbuffer.h"
+#include "pathtracer/motion_poses.h"
 #include "pathtracer/reference_error.h"
 
 namespace plumb {
@@ -40,7 +42,40 @@ StochasticPlane stochastic_plane(const std::string& name, int bounces) {
     return {name, Kind::indirect_bounce, bounce};
 }
 
-void check(const View& view, const ReferenceSettings& settings) {
+// The angle in radians between the orientations of two cameras.
+double turn_between(const Camera& a, const Camera& b) {
+    double trace = 0.0;
+    for (int axis = 0; axis < 3; ++axis) {
+        trace += glm::dot(glm::dvec3(a.world_from_camera[axis]), glm::dvec3(b.world_from_camera[axis]));
+    }
+    return std::acos(std::clamp(0.5 * (trace - 1.0), -1.0, 1.0));
+}
+
+// That rays and poses show what happens while the shutter is open.
+void check_shutter(const TracedScene& scene, const View& opening, const View& closing) {
+    if (opening.width() != closing.width() || opening.height() != closing.height()) {
+        throw ReferenceError(
+            fmt::format("the view at the opening of the shutter has {} x {} pixels, that at its closing {} x "
+                        "{}; they must be the same",
+                        opening.width(), opening.height(), closing.width(), closing.height()));
+    }
+    const double turn = glm::degrees(turn_between(opening.camera(), closing.camera()));
+    if (!(turn < 90.0)) {
+        throw ReferenceError(fmt::format(
+            "camera '{}' turns by {:.1f} degrees while the shutter is open, but primary rays go straight from one view "
+            "to the other, which shows no turn of 90 degrees or more; open the shutter for a shorter time",
+            closing.camera().name, turn));
+    }
+    for (const Instance& instance : scene.scene().instances) {
+        if (poses_over(instance, scene.span()) <= most_poses) continue;
+        throw ReferenceError(
+            fmt::format("instance '{}' turns by more than {} turns while the shutter is open, or would at its fastest, "
+                        "which is more than its {} poses show; open the shutter for a shorter time",
+                        instance.name, (most_poses - 1) / poses_per_turn, most_poses));
+    }
+}
+
+void check(const TracedScene& scene, const View& view, const ReferenceSettings& settings) {
     const Quantities& quantities = settings.quantities;
     if (settings.first_sample < 0 || settings.first_sample % 2 != 0 || settings.first_sample >= settings.samples) {
         throw ReferenceError(
@@ -89,18 +124,13 @@ void check(const View& view, const ReferenceSettings& settings) {
             "an oracle knows the layers of one moment, but the shutter is open for longer; close the shutter, or leave "
             "the oracle out");
     }
-    if (opening && (opening->width() != view.width() || opening->height() != view.height())) {
-        throw ReferenceError(
-            fmt::format("the view at the opening of the shutter has {} x {} pixels, that at its closing {} x "
-                        "{}; they must be the same",
-                        opening->width(), opening->height(), view.width(), view.height()));
-    }
+    if (opening) check_shutter(scene, *opening, view);
 }
 
 }  // namespace
 
 RenderPlan make_plan(const TracedScene& scene, const View& view, const ReferenceSettings& settings) {
-    check(view, settings);
+    check(scene, view, settings);
     using Kind = StochasticPlane::Kind;
     const Quantities& quantities = settings.quantities;
     RenderPlan plan;

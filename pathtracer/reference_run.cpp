@@ -87,7 +87,7 @@ void ReferenceRun::find_exact_parts() {
         VertexBatch start;
         for (int x = 0; x < view_.width(); ++x) {
             const Ray ray = view_.pixel_ray(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
-            const std::size_t pixel = pixel_index(x, y);
+            const std::size_t pixel = pixel_index(view_, x, y);
             if (hits_[pixel].missed()) {
                 exact_.emission[pixel] = scene_.scene().environment_radiance(ray.direction);
                 continue;

@@ -39,9 +39,6 @@ private:
     double worst_error() const;
     ReferenceResult finish(bool complete);  // the sums are gone afterwards
     int samples_done() const { return state_.end - state_.begin; }
-    std::size_t pixel_index(int x, int y) const {
-        return static_cast<std::size_t>(y) * static_cast<std::size_t>(view_.width()) + static_cast<std::size_t>(x);
-    }
 
     std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();
     const TracedScene& scene_;

@@ -76,7 +76,7 @@ void TileSampler::add_centre_samples(int x, int y, const SurfacePoint& point, co
         const int begin = starts.count, end = std::min(most_lanes, begin + first_sample + count - sample);
         integrator_.add_start(point, direction, {}, now, starts);
         starts.repeat(begin, end);
-        scratch.samples.fill(begin, end, static_cast<std::uint32_t>(pixel_index(x, y)), sample);
+        scratch.samples.fill(begin, end, static_cast<std::uint32_t>(pixel_index(view_, x, y)), sample);
         sequence.start_samples(sample, end - begin, begin, starts.samples);
         sample += end - begin;
         if (end == most_lanes) flush(scratch);
@@ -89,14 +89,14 @@ void TileSampler::add_centre_samples(int left, int right, int y, int first_sampl
     rays.count = 0;
     for (int x = left; x < right; ++x) {
         const Ray ray = view_.pixel_ray(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
-        scratch.hits.set(rays.count, hits_[pixel_index(x, y)]);
+        scratch.hits.set(rays.count, hits_[pixel_index(view_, x, y)]);
         rays.add(ray.origin, ray.direction, infinite_distance, now);
     }
     scratch.met.find(rays, scratch.hits);
     scene_.surface_points(rays, scratch.hits, scratch.met, scratch.surfaces);
     for (int x = left, j = 0; x < right; ++x) {
         if (scratch.hits.missed(x - left)) {
-            for (int i = 0; i < count; ++i) accumulation_.add_background(pixel_index(x, y), i & 1, {});
+            for (int i = 0; i < count; ++i) accumulation_.add_background(pixel_index(view_, x, y), i & 1, {});
             continue;
         }
         const SurfaceHit hit = scratch.hits.get(x - left);
@@ -127,12 +127,14 @@ void TileSampler::make_primary_rays(Scratch& scratch) const {
         const float at_x = scratch.primary_x[i] + x[i], at_y = scratch.primary_y[i] + y[i];
         const glm::vec2 lens = has_lens ? sample_disc({lens_x[i], lens_y[i]}) : glm::vec2(0.0f);
         Ray ray = view_.lens_ray(at_x, at_y, lens);
+        float scale = depth_per_distance(view_, ray.direction);
         if (opening) {
             const Ray before = opening->lens_ray(at_x, at_y, lens);
+            // Each ray's angle with its own view's axis: a ray keeps it as both turn.
+            scale = glm::mix(depth_per_distance(*opening, before.direction), scale, rays.time[i]);
             ray.origin = glm::mix(before.origin, ray.origin, rays.time[i]);
             ray.direction = glm::normalize(glm::mix(before.direction, ray.direction, rays.time[i]));
         }
-        const float scale = depth_per_distance(view_, ray.direction);
         rays.set(i, ray.origin, ray.direction, view_.camera().far_plane / scale, rays.time[i]);
         rays.nearest[i] = view_.camera().near_plane / scale;
     }
@@ -167,7 +169,7 @@ void TileSampler::add_spread_samples(int x, int y, int first_sample, int count, 
     const SampleSequence sequence(settings_.seed, x, y, settings_.points);
     for (int sample = first_sample; sample < first_sample + count;) {
         const int begin = scratch.primary.count, end = std::min(most_lanes, begin + first_sample + count - sample);
-        scratch.primary_samples.fill(begin, end, static_cast<std::uint32_t>(pixel_index(x, y)), sample);
+        scratch.primary_samples.fill(begin, end, static_cast<std::uint32_t>(pixel_index(view_, x, y)), sample);
         scratch.primary_x.fill(begin, end, static_cast<float>(x));
         scratch.primary_y.fill(begin, end, static_cast<float>(y));
         sequence.start_samples(sample, end - begin, begin, scratch.primary_points);

@@ -42,9 +42,6 @@ private:
     void make_primary_rays(Scratch& scratch) const;
     void trace_primary_rays(Scratch& scratch);
     void flush(Scratch& scratch);
-    std::size_t pixel_index(int x, int y) const {
-        return static_cast<std::size_t>(y) * static_cast<std::size_t>(view_.width()) + static_cast<std::size_t>(x);
-    }
 
     const TracedScene& scene_;
     const View& view_;

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <glm/gtc/matrix_inverse.hpp>
 
+#include "pathtracer/motion_poses.h"
 #include "pathtracer/reference_error.h"
 #include "pathtracer/traced_scene.h"
 #include "scenes/ggx.h"
@@ -103,10 +104,7 @@ TracedScene::~TracedScene() {
 }
 
 int TracedScene::steps_of(const Instance& instance, const TimeSpan& span) {
-    // Poses of a moving instance over the time span: a quarter turn between two of them bulges by less than a fiftieth
-    // of its radius.
-    constexpr int poses = 9;
-    return instance.moves() && span.end > span.begin ? poses : 1;
+    return static_cast<int>(std::min<double>(poses_over(instance, span), most_poses));
 }
 
 // Room for all vertices at once: parts point into it.

@@ -1,5 +1,6 @@
 #include "scenes/motion.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -42,7 +43,24 @@ public:
         return pose;
     }
 
+    // Radians per second that the turn between the two keys never exceeds. The Bernstein polynomials' derivatives weigh
+    // the three turns of a smooth one with numbers that are positive and sum to three.
+    double fastest_turn() const {
+        if (!(span_.duration > 0.0)) return 0.0;
+        const auto angle = [](const glm::dvec3& half_turn) { return 2.0 * glm::length(half_turn); };
+        if (motion_.interpolation == MotionInterpolation::linear) {
+            return angle(turn(span_.from, span_.to)) / span_.duration;
+        }
+        const SmoothTurn turns = smooth_turn();
+        return 3.0 * std::max({angle(turns.first), angle(turns.second), angle(turns.third)}) / span_.duration;
+    }
+
 private:
+    // Turns that, one after the other, lead from one key to the next.
+    struct SmoothTurn {
+        glm::dvec3 first, second, third;
+    };
+
     template <typename Value>
     glm::dvec3 between(Value value) const {
         if (motion_.interpolation == MotionInterpolation::smooth) return catmull_rom(keys_, span_, value);
@@ -66,13 +84,18 @@ private:
         if (motion_.interpolation == MotionInterpolation::linear) {
             return start * exponential(s * turn(span_.from, span_.to));
         }
-        const glm::dvec3 first = span_.duration / 3.0 * angular_velocity(span_.from);
-        const glm::dvec3 third = span_.duration / 3.0 * angular_velocity(span_.to);
-        const glm::dvec3 second = logarithm(glm::conjugate(exponential(first)) * glm::conjugate(start) *
-                                            orientation(span_.to) * glm::conjugate(exponential(third)));
+        const auto [first, second, third] = smooth_turn();
         const double rest = 1.0 - s;
         return start * exponential((1.0 - rest * rest * rest) * first) * exponential((3.0 - 2.0 * s) * s * s * second) *
                exponential(s * s * s * third);
+    }
+    SmoothTurn smooth_turn() const {
+        const glm::dvec3 first = span_.duration / 3.0 * angular_velocity(span_.from);
+        const glm::dvec3 third = span_.duration / 3.0 * angular_velocity(span_.to);
+        const glm::dvec3 second =
+            logarithm(glm::conjugate(exponential(first)) * glm::conjugate(orientation(span_.from)) *
+                      orientation(span_.to) * glm::conjugate(exponential(third)));
+        return {first, second, third};
     }
 
     const Motion& motion_;
@@ -84,6 +107,16 @@ private:
 
 glm::mat4 Motion::pose(double time) const {
     return glm::mat4(PoseAtTime(*this, time).world_from_rest() * glm::dmat4(rest));
+}
+
+double Motion::fastest_turn(double begin, double end) const {
+    double fastest = 0.0;
+    for (std::size_t i = 1; i < keys.size(); ++i) {
+        if (keys[i].time > begin && keys[i - 1].time < end) {
+            fastest = std::max(fastest, PoseAtTime(*this, keys[i - 1].time).fastest_turn());
+        }
+    }
+    return fastest;
 }
 
 void Motion::check() const {

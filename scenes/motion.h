@@ -37,6 +37,8 @@ struct Motion {
 
     // Needs a key.
     glm::mat4 pose(double time) const;
+    // Radians per second that it never turns faster than between two times. Needs a key.
+    double fastest_turn(double begin, double end) const;
     // Throws SceneError where times do not increase, a value is not finite, a rotation is not of unit length, a scale
     // is not positive, `rest` mirrors or flattens, or the turn from one key to the next is a whole one, whose axis
     // nobody can tell.

@@ -1,7 +1,10 @@
 // The shutter: moving surfaces, moving emitters, turning surfaces, a moving camera; and what knows no shutter.
 #include <glm/gtc/matrix_transform.hpp>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "pathtracer/reference_error.h"
+#include "pathtracer/traced_scene.h"
 #include "tests/pathtracer/closed_forms.h"
 #include "tests/pathtracer/effects_scenes.h"
 
@@ -160,6 +163,120 @@ TEST(Shutter, ATurningEdgeSweepsAnglesEvenly) {
             if (point.x < 0.0 && point.y < 0.0) expected = (angle + pi) / (pi / 2.0);
             EXPECT_NEAR(frame.plane("emission").at(x, y), expected, time_error + 2e-4) << x << ", " << y;
         }
+    }
+}
+
+// Lets the last instance spin about the view's axis, by that many turns in the second from 0 to 1.
+void let_spin(Scene& scene, double turns, MotionInterpolation interpolation = MotionInterpolation::linear) {
+    Motion& motion = scene.instances.back().motion;
+    motion.interpolation = interpolation;
+    motion.rest = scene.instances.back().world_from_object;
+    const int keys = static_cast<int>(std::ceil(3.0 * turns)) + 1;  // a third of a turn apart at most
+    for (int i = 0; i < keys; ++i) {
+        const double time = static_cast<double>(i) / (keys - 1);
+        motion.keys.push_back(
+            {.time = static_cast<float>(time),
+             .rotation = glm::angleAxis(static_cast<float>(2.0 * pi * turns * time), glm::vec3(0, 0, 1))});
+    }
+    motion.check();
+}
+
+// A wheel of two turns while the shutter is open: every point of it is where the motion has it, but for the bulge of a
+// circle over its chord. With a 32nd of a turn between poses that is (pi / 16)^2 / 8 of the radius, 0.0049.
+TEST(TimeSpan, PosesOfASpinningWheelAreWhereItIs) {
+    for (const auto interpolation : {MotionInterpolation::linear, MotionInterpolation::smooth}) {
+        Scene scene;
+        add_quads(scene, add_material(scene, glm::vec3(0.5f)), {{{0, 0, -2}, {1, 0, -2}, {0, 1, -2}, {-1, 0, -2}}});
+        let_spin(scene, 2.0, interpolation);
+        const TimeSpan span{0.0, 1.0};
+        const TracedScene traced(scene, span);
+        double largest = 0.0;
+        for (int i = 0; i <= 1000; ++i) {
+            const double time = i / 1000.0;
+            const glm::mat4 pose = scene.instances[0].motion.pose(time);
+            const TracedTriangle moved = traced.triangle(0, 0, static_cast<float>(time));
+            const glm::vec3 corners[] = {moved.a, moved.b, moved.c};
+            for (std::size_t k = 0; k < 3; ++k) {
+                const glm::vec3 exact(pose * glm::vec4(scene.meshes[0].positions[k], 1.0f));
+                largest = std::max(largest, static_cast<double>(glm::distance(exact, corners[k])));
+            }
+        }
+        EXPECT_LE(largest, 0.0049);
+        EXPECT_GE(largest, 0.002) << "a bound that is far from the truth is wrong as well";
+    }
+}
+
+// Half a plane that spins covers each pixel for half of the time. 1e-3: of edges between two poses, as above.
+TEST(Shutter, ASpinningHalfPlaneCoversHalfOfTheTime) {
+    for (const double turns : {1.0, 2.0, 4.0}) {
+        Scene scene;
+        add_quads(scene, add_material(scene, glm::vec3(0.0f), glm::vec3(1.0f)),
+                  {{{-9, -9, -2}, {9, -9, -2}, {9, 0, -2}, {-9, 0, -2}}});
+        let_spin(scene, turns);
+        const View view = forward_view();
+        const Frame frame =
+            PathTracer(scene, {0.0, 1.0}).render(view, shutter_settings(view, {"emission"}, samples)).frame;
+        for (const float value : frame.plane("emission").values()) {
+            EXPECT_NEAR(value, 0.5, 2.0 * turns * time_error + 1e-3) << turns << " turns";
+        }
+    }
+}
+
+TEST(Shutter, RefusesATurnThatItsPosesDoNotShow) {
+    Scene scene;
+    add_quads(scene, add_material(scene, glm::vec3(0.5f)), {floor_quad(1.0f)});
+    scene.instances.back().name = "fan";
+    let_spin(scene, 9.0);
+    const View view = forward_view(4);
+    const auto rendered = [&](const TimeSpan& span, bool has_shutter) {
+        auto settings = settings_for({"ao"}, 2);
+        if (has_shutter) settings.view_at_shutter_opening = view;
+        PathTracer(scene, span).render(view, settings);
+    };
+    EXPECT_THAT(
+        [&] {
+            rendered({0.0, 1.0}, true);
+        },
+        testing::ThrowsMessage<ReferenceError>(
+            testing::AllOf(testing::HasSubstr("'fan'"), testing::HasSubstr("shorter time"))));
+    rendered({0.0, 0.4}, true);
+    rendered({0.0, 1.0}, false);  // only the ends are looked at
+}
+
+// Inside a glowing box that lies between the planes every ray meets a wall, however far the camera turns.
+TEST(Shutter, ATurningCameraKeepsItsNearAndFarPlanes) {
+    for (const float angle : {0.3f, 1.5f}) {
+        Scene scene;
+        add_quads(scene, add_material(scene, glm::vec3(0.0f), glm::vec3(1.0f)), room_quads());
+        const auto turned = [&](float by) {
+            View view = view_of({0, 0, 0}, {std::sin(by), 0, -std::cos(by)}, 1.2f, 8);
+            Camera camera = view.camera();
+            camera.near_plane = 0.02f, camera.far_plane = 3.0f;
+            return View(camera, 8, 8);
+        };
+        const View opening = turned(0.0f), closing = turned(angle);
+        const Frame frame =
+            PathTracer(scene, {0.0, 1.0}).render(closing, shutter_settings(opening, {"emission"}, 64)).frame;
+        for (const float value : frame.plane("emission").values()) EXPECT_EQ(value, 1.0f) << angle;
+    }
+}
+
+TEST(Shutter, RefusesATurnOfTheCameraByARightAngle) {
+    Scene scene;
+    add_quads(scene, add_material(scene, glm::vec3(0.5f)), room_quads());
+    const PathTracer tracer(scene, {0.0, 1.0});
+    const View opening = forward_view(4);
+    const auto rendered_until = [&](float angle, const glm::vec3& axis) {
+        Camera camera = opening.camera();
+        camera.world_from_camera = glm::rotate(camera.world_from_camera, glm::radians(angle), axis);
+        const View closing(camera, 4, 4);
+        tracer.render(closing, shutter_settings(opening, {"emission"}, 2));
+    };
+    for (const glm::vec3 axis : {glm::vec3(0, 1, 0), glm::vec3(0, 0, 1), glm::vec3(1, 2, -3)}) {
+        EXPECT_THAT([&] { rendered_until(91.0f, axis); },
+                    testing::ThrowsMessage<ReferenceError>(
+                        testing::AllOf(testing::HasSubstr("91.0 degrees"), testing::HasSubstr("shorter time"))));
+        rendered_until(89.0f, axis);
     }
 }
 

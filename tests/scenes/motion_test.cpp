@@ -115,6 +115,31 @@ TEST(Motion, SmoothKeepsItsVelocityAtKeys) {
     }
 }
 
+// How fast the orientations of the poses differ, over steps of a millisecond: a bound that holds, and is not idle. That
+// of a linear motion is its constant speed.
+TEST(Motion, NeverTurnsFasterThanItSays) {
+    for (const auto interpolation : {MotionInterpolation::linear, MotionInterpolation::smooth}) {
+        Motion motion = tumbling(interpolation);
+        for (MotionKey& key : motion.keys) key.scale = glm::vec3(1.0f);
+        motion.rest = glm::mat4(1.0f);
+        const auto orientation = [&](double time) { return glm::dquat(glm::quat_cast(motion.pose(time))); };
+        for (const auto& [begin, end] : {std::pair{0.0, 5.0}, std::pair{1.2, 1.9}, std::pair{2.5, 4.2}}) {
+            constexpr double step = 1e-3;
+            double fastest = 0.0;
+            for (double time = begin; time + step <= end; time += step) {
+                const glm::dquat turned = glm::conjugate(orientation(time)) * orientation(time + step);
+                fastest = std::max(fastest, 2.0 * glm::length(glm::dvec3(turned.x, turned.y, turned.z)) / step);
+            }
+            const double bound = motion.fastest_turn(begin, end);
+            // 2e-3: half a milliradian or more, of which orientations in float tell 1e-7.
+            EXPECT_LE(fastest, 1.002 * bound) << begin << " to " << end;
+            EXPECT_GE(fastest, (interpolation == MotionInterpolation::linear ? 0.99 : 0.33) * bound) << begin;
+        }
+        EXPECT_EQ(motion.fastest_turn(-3.0, 1.0), 0.0);
+        EXPECT_EQ(motion.fastest_turn(4.5, 9.0), 0.0);
+    }
+}
+
 TEST(Motion, ScaleStaysPositiveAndLinearScaleIsGeometric) {
     Motion motion;
     motion.keys = {
