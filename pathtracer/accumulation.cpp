@@ -87,11 +87,19 @@ void Accumulation::add_background(std::size_t pixel, int half, const glm::vec3& 
 
 bool Accumulation::is_exact() const {
     constexpr double largest_count = 0x1p53;  // of quanta
+    bool exact = true;
     for (std::size_t i = 0; i < sums_.size(); ++i) {
+        if (!std::isfinite(sums_[i])) {
+            const std::size_t pixel = i / (2 * channels_), width = static_cast<std::size_t>(width_);
+            throw ReferenceError(
+                fmt::format("a sample of pixel ({}, {}) is {}, no finite number; look for what it sees whose light, "
+                            "colour, normal or texture is none, or brighter than single precision tells",
+                            pixel % width, pixel / width, sums_[i]));
+        }
         const bool is_visibility = ao_ >= 0 && i % channels_ == static_cast<std::size_t>(ao_);
-        if (!(sums_[i] < largest_count * (is_visibility ? visibility_quantum : quantum_))) return false;
+        exact = exact && sums_[i] < largest_count * (is_visibility ? visibility_quantum : quantum_);
     }
-    return true;
+    return exact;
 }
 
 Accumulation::Value Accumulation::value(const StochasticPlane& plane, std::size_t pixel, int samples,

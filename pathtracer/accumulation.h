@@ -66,7 +66,8 @@ public:
     void write(const std::vector<StochasticPlane>& planes, int samples, const ExactParts& exact, Frame& frame);
     // RMS standard error of the plane over its RMS; 0 for a black plane. The same bits whatever the number of threads.
     double relative_error(const StochasticPlane& plane, int samples, const ExactParts& exact) const;
-    // False once a sum has grown so large that its last bits depend on the order of the samples.
+    // False once a sum has grown so large that its last bits depend on the order of the samples. Throws ReferenceError
+    // for a sum that is no finite number.
     bool is_exact() const;
 
     std::span<double> values() { return sums_.values(); }

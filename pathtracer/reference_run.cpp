@@ -28,19 +28,37 @@ int next_error_check(int samples) {
 }
 bool is_error_check(int samples) { return samples >= 2 && next_error_check(samples - 1) == samples; }
 
+// One side of all that has the material, in square metres.
+double area_of(const TracedScene& traced, const Material& material) {
+    double area = 0.0;
+    for (std::uint32_t instance = 0; instance < traced.scene().instances.size(); ++instance) {
+        if (&traced.material(instance) != &material) continue;
+        for (std::uint32_t i = 0; i < traced.triangle_count(instance); ++i) {
+            area += 0.5 * static_cast<double>(glm::length(traced.triangle(instance, i).scaled_normal()));
+        }
+    }
+    return area;
+}
+
 // About the brightest radiance that a surface of the scene may show: the brightest emission, and what the other lights
 // make of a white surface across the scene.
-double light_level(const Scene& scene) {
+double light_level(const TracedScene& traced) {
+    const Scene& scene = traced.scene();
     const Bounds bounds = scene.bounds();
     // Without a surface there is nothing for local lights to shine on.
     const double squared_size = bounds.empty() ? HUGE_VAL : std::pow(static_cast<double>(bounds.diagonal()), 2.0);
-    // A texel of an image may be a sun: it counts as far as it would fill the exact sums with a few hundred samples,
-    // and no more, or what the rest of the image gives would be rounded coarsely.
+    // A texel of an image may be a sun, a surface a glowing wire: it counts as far as it would fill the exact sums with
+    // a few hundred samples, and no more, or what its light makes of all else would be rounded coarsely.
     constexpr double sun_share = 0x1p-12;
     double level = std::max(static_cast<double>(luminance(scene.environment.radiance)),
                             sun_share * static_cast<double>(scene.brightest_emission()));
-    for (const Material& material : scene.materials)
-        level = std::max(level, static_cast<double>(luminance(material.emission)));
+    for (const Material& material : scene.materials) {
+        if (!material.is_emissive()) continue;
+        // The light of a lamp that is seen across the scene is dimmer than itself by about its share of the squared
+        // size. One of a 64th counts in full: of a view into its light, many pixels are.
+        const double share = std::clamp(64.0 * area_of(traced, material) / squared_size, sun_share, 1.0);
+        level = std::max(level, share * luminance(material.emission));
+    }
     for (const PointLight& light : scene.point_lights) level += luminance(light.intensity) / squared_size;
     for (const SpotLight& light : scene.spot_lights) level += luminance(light.intensity) / squared_size;
     for (const DirectionalLight& light : scene.directional_lights) level += luminance(light.irradiance);
@@ -66,8 +84,7 @@ ReferenceRun::ReferenceRun(const TracedScene& scene, const EnvironmentDistributi
                                                 settings.oracle->minimum_separation)
                   : std::nullopt),
       integrator_(scene, lights_, layers_ ? &*layers_ : nullptr, plan_.estimation),
-      accumulation_(view.width(), view.height(), plan_.estimation, plan_.primary_rays_are_sampled,
-                    light_level(scene.scene())),
+      accumulation_(view.width(), view.height(), plan_.estimation, plan_.primary_rays_are_sampled, light_level(scene)),
       hits_(plan_.primary_rays_are_sampled && plan_.gbuffer.empty() ? std::vector<SurfaceHit>{}
                                                                     : first_layer(scene, view)),
       sampler_(scene, view, settings, plan_.primary_rays_are_sampled, hits_, integrator_, accumulation_) {

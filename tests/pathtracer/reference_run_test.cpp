@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "pathtracer/accumulation.h"
 #include "pathtracer/reference_error.h"
 #include "scenes/builtin.h"
 #include "scenes/scene_error.h"
@@ -285,6 +286,19 @@ TEST(Reference, RefusesSenselessSettings) {
     refuses([](auto& s) { s.quantities.planes = {"layer2.ao"}; }, "no plane 'layer2.ao'");
     refuses([](auto& s) { s.quantities.planes = {"indirect.2"}; }, "raise bounces");
     EXPECT_THROW(tracer.render(view, settings_for({"ao"}, 2), {.threads = -1}), ReferenceError);
+}
+
+TEST(Accumulation, TellsOfASampleThatIsNoNumber) {
+    EstimationPlan plan;
+    plan.ao = plan.direct = true;
+    for (const double value : {std::nan(""), HUGE_VAL}) {
+        Accumulation sums(3, 2, plan, false, 1.0);
+        EXPECT_TRUE(sums.is_exact());
+        const std::size_t pixel = 4, channels = 4;
+        sums.values()[(2 * pixel + 1) * channels + 2] = value;
+        EXPECT_THAT([&] { sums.is_exact(); },
+                    ThrowsMessage<ReferenceError>(testing::AllOf(HasSubstr("pixel (1, 1)"), HasSubstr("texture"))));
+    }
 }
 
 TEST(Reference, SaysHowMuchMemoryItWantsWhereThereIsNotAsMuch) {
