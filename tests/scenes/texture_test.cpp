@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include <glm/gtc/constants.hpp>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -147,6 +148,13 @@ TEST(Environment, StraightUpIsTheFirstRowAndMinusZTheMiddle) {
     const Environment environment;
     EXPECT_NEAR(environment.texture_coordinates({0, 1, 0}).y, 0.0f, 1e-6f);
     EXPECT_NEAR(environment.texture_coordinates({0, -1, 0}).y, 1.0f, 1e-6f);
+    // Near the poles as well, where the cosine tells nothing. 1e-5: a few roundings.
+    for (const float angle : {1e-5f, 1e-4f, 1e-3f, 0.1f}) {
+        const float v = angle / glm::pi<float>();
+        const glm::vec3 up(std::sin(angle), std::cos(angle), 0);
+        EXPECT_NEAR(environment.texture_coordinates(up).y, v, 1e-5f * v);
+        EXPECT_NEAR(environment.texture_coordinates(-up).y, 1.0f - v, 3e-7f);
+    }
     EXPECT_NEAR(environment.texture_coordinates({0, 0, -1}).x, 0.5f, 1e-6f);
     EXPECT_NEAR(environment.texture_coordinates({1, 0, 0}).x, 0.75f, 1e-6f);
 }
