@@ -121,6 +121,14 @@ inline const Way as_it_is{"as it is"}, half_a{"half A", {}, "half_a."}, half_b{"
     random_points{"random points", [](ReferenceSettings&settings) { settings.points = SamplePoints::random; }},
     antialiased{"antialiased", [](ReferenceSettings&settings) { settings.antialias = true; }};
 
+// Both changes at once.
+inline Way with(const Way& one, const Way& other) {
+    return {fmt::format("{} with {}", one.name, other.name), [=](ReferenceSettings& settings) {
+                one.change(settings);
+                other.change(settings);
+            }};
+}
+
 inline Frame render_in_shards(const PathTracer& tracer, const View& view, ReferenceSettings settings) {
     const auto folder = std::filesystem::temp_directory_path() / fmt::format("plumbline_proofs_{}", ::getpid());
     std::filesystem::create_directories(folder);

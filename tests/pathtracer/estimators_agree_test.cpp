@@ -31,6 +31,9 @@ std::vector<Comparison> comparisons() {
         {room(), as_it_is, random_points, first_bounce, 1, 12288},
         {room(), as_it_is, shards, first_bounce, 1, 8192},  // of other seeds
         {room(), roulette_after(0), roulette_after(1), {"indirect"}, 2, 4096},
+        {room(), antialiased, with(antialiased, random_points), first_bounce, 1, 12288},
+        {small_light(), antialiased, with(antialiased, lights), direct},
+        {open_air(), antialiased, with(antialiased, directions), direct},
     };
 }
 

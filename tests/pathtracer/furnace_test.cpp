@@ -77,6 +77,32 @@ TEST(FurnaceByDirections, IndirectLightCountsByDistanceAsOccludersDo) {
     }
 }
 
+// The same identity where points on the walls are sampled as well. The openness is that of a run of its own, whose
+// noise, at 64 times as many samples, counts for nothing.
+TEST(FurnaceByBoth, IndirectLightCountsByDistanceAsOccludersDo) {
+    const float albedo = 0.5f;
+    const Scene scene = furnace(albedo, 1.0f, glm::mat4(1.0f));
+    const PathTracer tracer(scene);
+    const View view = view_of({0, 0, 0}, {0.4f, -1, 0.3f}, 1.5f);
+    for (const Falloff falloff : {Falloff::hard, Falloff::quadratic, Falloff::cubic}) {
+        for (const float radius : {0.7f, 1.5f, 10.0f}) {
+            auto settings = settings_for({"ao"}, 8192);
+            settings.quantities.ao_radius = settings.quantities.indirect_radius = radius;
+            settings.quantities.ao_falloff = settings.quantities.indirect_falloff = falloff;
+            const Frame openness = tracer.render(view, settings).frame;
+            settings.quantities.planes = {"indirect.1", "indirect.2"}, settings.quantities.bounces = 2;
+            settings.samples = 1024, settings.seed = 2;
+            const Frame frame = tracer.render(view, settings).frame;
+            for (const int k : {1, 2}) {
+                expect_mean(
+                    frame, fmt::format("indirect.{}", k),
+                    [&](int x, int y) { return std::pow(albedo, k + 1) * (1.0 - openness.plane("ao").at(x, y)); },
+                    fmt::format("{} within {}", to_string(falloff), radius), 1e-3, 0.03);
+            }
+        }
+    }
+}
+
 // Following rays to the walls, every ray finds the same radiance: there is nothing random left.
 TEST(FurnaceByDirections, IsFreeOfNoise) {
     const Scene scene = furnace(0.5f, 1.0f, glm::mat4(1.0f));

@@ -218,6 +218,43 @@ TEST(LightChoice, SharesWithAnEnvironmentImage) {
         Uses::first);
 }
 
+// A constant sky has no texels to choose: its directions are those of the cosine, half of them where it shares with the
+// lamps, and so is the density that they carry.
+TEST(LightChoice, OfAConstantSkyFollowsTheCosine) {
+    for (const bool with_lamps : {false, true}) {
+        Lamps lamps;
+        Scene scene = with_lamps ? lamps.scene : Scene();
+        scene.environment.radiance = glm::vec3(1.0f, 2.0f, 0.5f);
+        const TracedScene traced(scene);
+        const EnvironmentDistribution environment(scene);
+        const LightTable lights(traced, environment, EmitterSampling::lights);
+        const double share = with_lamps ? 0.5 : 1.0;
+        const glm::vec3 normal = glm::normalize(glm::vec3(1, 3, -2));
+        const LightReceiver tilted{glm::vec3(0.0f), normal, normal};
+        const DirectionCells cells(normal, 12);
+        const auto of_the_sky = [&](const LightSample& sample) {
+            // The sun's and the sky's rays never end; their colours differ.
+            return sample.farthest != 1.0f && sample.radiance.x > 0.0f && sample.radiance.y == 2.0f * sample.radiance.x;
+        };
+        const auto density = [&](const glm::vec3& direction) {
+            return share * std::max(0.0f, glm::dot(direction, normal)) * glm::one_over_pi<float>();
+        };
+        int wrong = 0;
+        expect_density(
+            with_lamps ? "constant sky beside lamps" : "constant sky", cells.integrals(density),
+            with_lamps ? Rejection::possible : Rejection::never,
+            [&](glm::vec2 u) {
+                const LightSample sample = lights.sample_extended(tilted, u.x, u.y);
+                if (!of_the_sky(sample)) return -1;
+                // 1e-5: the rounding of a cosine near the horizon, against one that is not small.
+                wrong += std::abs(sample.density - density(sample.direction)) < 1e-5 ? 0 : 1;
+                return cells.cell(sample.direction);
+            },
+            Uses::both, with_lamps ? 0.3 : 0.7);
+        EXPECT_EQ(wrong, 0) << "densities that are not the cosine's";
+    }
+}
+
 // Points and spots in five directions, besides one below the horizon and one that faces away, with a parallel light.
 // What each sends to the receiver at the origin by the formulas of scenes/lights.h, in double.
 struct Arriving {

@@ -95,6 +95,41 @@ TEST(Oracle, KnowsOfWhatLiesBesideTheViewByItsGuardBand) {
     }
 }
 
+// The same of the light that a bounce and a mirror bring from the wall, whose inside a sun lights that passes along the
+// floor.
+TEST(Oracle, KnowsOfLightFromBesideTheViewByItsGuardBand) {
+    Scene scene;
+    add_quads(scene, add_dielectric(scene, glm::vec3(0.5f), 0.0f, 0.4f), {floor_quad(3.0f)});
+    add_quads(scene, add_material(scene, glm::vec3(0.5f)),
+              {{{1.2f, 0, 3}, {1.2f, 0, -3}, {1.6f, 1, -3}, {1.6f, 1, 3}}});
+    scene.directional_lights.push_back({"sun", {1, 0, 0}, glm::vec3(3.0f)});
+    const PathTracer tracer(scene);
+    // The layers are those of the floor from above, finely: a guard band as wide as in the test before is 28 of 66
+    // pixels over the wall.
+    const View layers_view = from_above(128), view = view_of({-1.2f, 0.8f, 0}, {0.6f, 0, 0}, 0.3f);
+    const std::vector<std::string> planes = {"indirect.1", "reflection"};
+    const Frame truth = tracer.render(view, settings_of({}, planes, 256)).frame;
+    for (const int layers : {1, 2, 0}) {
+        const auto seen_with = [&](int guard_band) {
+            const OracleSettings oracle{layers_view.with_guard_band(guard_band), layers, 0.1f};
+            return tracer.render(view, settings_of(oracle, planes, 256)).frame;
+        };
+        const Frame narrow = seen_with(0), wide = seen_with(200);
+        for (const std::string& plane : planes) {
+            const std::string what = fmt::format("{} layers, {}", layers, plane);
+            EXPECT_GT(mean_of(truth.plane(plane)), 1e-3) << what;
+            const auto known = truth.plane(plane).values(), without = narrow.plane(plane).values(),
+                       with = wide.plane(plane).values();
+            for (std::size_t i = 0; i < known.size(); ++i) {
+                EXPECT_EQ(without[i], 0.0f) << what << ", value " << i;
+                // What the band's pixels hold ends within their width.
+                EXPECT_LE(with[i], known[i] * (layers == 0 ? 1.0f : 1.00001f)) << what << ", value " << i;
+            }
+            EXPECT_GE(mean_of(wide.plane(plane)), (layers == 0 ? 1.0 : 0.95) * mean_of(truth.plane(plane))) << what;
+        }
+    }
+}
+
 // The same rays meet ever more as layers are added, pixel by pixel.
 TEST(Oracle, GrowsLayerByLayerTowardsTheTruth) {
     for (const Falloff falloff : {Falloff::hard, Falloff::quadratic, Falloff::cubic}) {
@@ -190,15 +225,17 @@ TEST(Oracle, RefusesAnOpenShutter) {
 }
 
 TEST(Oracle, OfAllThatTheFrustumHoldsIsTheTruthWhereItHoldsEverything) {
-    const Scene scene = make_cornell();
+    Scene scene = make_cornell();
+    for (Material& material : scene.materials) material.dielectric_reflectance = 0.2f, material.roughness = 0.5f;
     // From far outside, where the whole box is in view; all of it lies between the camera's planes.
     Camera camera = scene.cameras[0];
     camera.near_plane = 1e-3f, camera.far_plane = 100.0f;
     const View view(camera, 24, 24);
     const PathTracer tracer(scene);
-    auto settings = settings_of({}, {"ao", "direct", "indirect.1", "indirect.2"}, 16, 2);
+    auto settings = settings_of({}, {"ao", "direct", "indirect.1", "indirect.2", "reflection"}, 16, 2);
     settings.emitter_sampling = EmitterSampling::lights;  // as an oracle does
     const Frame truth = tracer.render(view, settings).frame;
+    EXPECT_GT(mean_of(truth.plane("reflection")), 1e-3);
     settings.oracle = OracleSettings{view.with_guard_band(400), 0, 0.1f};
     expect_same_bits(tracer.render(view, settings).frame, truth);
 }

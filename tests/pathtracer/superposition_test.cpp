@@ -57,14 +57,18 @@ TEST(Superposition, OfLampsThatOnlyTheLobeSees) {
     expect_agreement(together, summed, "two lamps beside the viewer", 2e-3);
 }
 
-class LinearityInEmission : public testing::TestWithParam<bool> {};
+struct LinearityCase {
+    bool antialias;
+    Sky sky;
+};
+class LinearityInEmission : public testing::TestWithParam<LinearityCase> {};
 
-Frame at_brightness(float brightness, bool antialias) {
+Frame at_brightness(float brightness, const LinearityCase& with) {
     Lit lit = everything;
-    lit.brightness = brightness;
+    lit.brightness = brightness, lit.sky = with.sky;
     const Scene scene = lit_room(lit, 0.1f);
     auto settings = settings_for(all_planes, 16, 3);
-    settings.antialias = antialias;
+    settings.antialias = with.antialias;
     return PathTracer(scene).render(room_view(), settings).frame;
 }
 
@@ -100,8 +104,14 @@ TEST_P(LinearityInEmission, HoldsWithinRoundingForOtherFactors) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, LinearityInEmission, testing::Bool(),
-                         [](const auto& test) { return test.param ? "Antialiased" : "ThroughPixelCentres"; });
+INSTANTIATE_TEST_SUITE_P(All, LinearityInEmission,
+                         testing::Values(LinearityCase{false, Sky::constant}, LinearityCase{true, Sky::constant},
+                                         LinearityCase{false, Sky::image}, LinearityCase{true, Sky::image}),
+                         [](const auto& test) {
+                             return fmt::format("{}Under{}Sky",
+                                                test.param.antialias ? "Antialiased" : "ThroughPixelCentres",
+                                                test.param.sky == Sky::image ? "AnImage" : "AConstant");
+                         });
 
 // The total of both halves and of the mean is ((emission + direct) + indirect) + reflection, and the indirect light the
 // sum of its bounces from the first on, added in float: whoever adds the planes up gets the very bits.
