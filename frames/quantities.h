@@ -46,8 +46,8 @@ struct Quantities {
     Falloff ao_falloff = Falloff::quadratic;
 
     int bounces = 1;  // diffuse bounces K that indirect, irradiance and total contain
-    // Metres: light that arrives at a shaded point from farther away than this does not count as indirect. Infinity:
-    // all (what a user wants); the method's radius: what the method tried.
+    // Metres: light that arrives at a shaded point from farther away than this does not count as indirect; `direct`
+    // knows no radius. Infinity: all (what a user wants); the method's radius: what the method tried.
     float indirect_radius = std::numeric_limits<float>::infinity();
     Falloff indirect_falloff = Falloff::hard;  // how light counts that arrives from a distance within that radius
     // The same for what a shaded point shows through its specular lobe: `reflection`.

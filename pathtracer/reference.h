@@ -4,8 +4,8 @@
 // multiple importance sampling at every vertex, Owen-scrambled Sobol points, no clamping. Surfaces have the lobes of
 // scenes/material.h: Lambertian, GGX, and thin transparency. At the first point they are kept apart: `direct` and
 // `indirect` are what its diffuse lobe reflects, `reflection` is what its specular lobe reflects and what passes
-// straight through it; at later points all lobes scatter. Directional lights with an angular size are seen in mirrors,
-// but not by the camera.
+// straight through it; at later points all lobes scatter. Directional lights with an angular size are seen in mirrors
+// and through panes, both of which is `reflection`, but not by the camera.
 //   Good for: diffuse and glossy light of any kind. Bad for: caustics, which only paths from the eye look for, and
 //   light that squeezes through small gaps.
 //
@@ -89,7 +89,9 @@ struct ReferenceControl {
 
 struct ReferenceResult {
     // The wanted planes. For every stochastic one also
-    //   half_a.*, half_b.*  the means of the even and of the odd samples: independent, and `plane` is their average;
+    //   half_a.*, half_b.*  the means of the even and of the odd samples, which are independent. `plane` is their
+    //                       average; that of indirect is the sum of those of its bounces, that of total the sum of its
+    //                       parts, so that the planes add up, and rounding may tell it from the average of its halves;
     //   variance.*          of the mean, per channel: ((half_a - half_b) / 2)^2. Unbiased also where samples have low
     //                       discrepancy, but with one degree of freedom per pixel: average it over pixels before use.
     Frame frame;
