@@ -51,6 +51,7 @@ void add_reflections(std::vector<MethodParameter>& parameters, ReflectionSetting
 void add_temporal(std::vector<MethodParameter>& parameters, const std::string& prefix, TemporalFilterSettings& filter) {
     parameters.insert(parameters.end(), {
                                             {prefix + "alpha", &filter.alpha, 0, 0.99},
+                                            {prefix + "rejection", choice(filter.rejection, {"plane", "mara2016"})},
                                             {prefix + "reject_from", &filter.reject_from, 0, 1e6},
                                             {prefix + "reject_to", &filter.reject_to, 0, 1e6},
                                             {prefix + "layers", &filter.layers, 1, 2},

@@ -101,9 +101,14 @@ struct BilateralBlurSettings {
     int depth_key_bits = 32;     // 8, 16: depths are compared as fractions of the far plane of so many bits
 };
 
+// From what the surfaces of the frame before are measured that a point may be found on (temporal_filter.h): the plane
+// through the point, or, as Mara et al. 2016 and their code have it, the point itself.
+enum class HistoryRejection { plane, mara2016 };
+
 // What a pass takes over from the frame before, reprojected (temporal_filter.h has the formula).
 struct TemporalFilterSettings {
-    float alpha = 0.0f;         // weight of the frame before; 0: no filter
+    float alpha = 0.0f;  // weight of the frame before; 0: no filter
+    HistoryRejection rejection = HistoryRejection::plane;
     float reject_from = 0.05f;  // metres that a point may be from where it is looked for, before its weight falls...
     float reject_to = 0.07f;    // ...until nothing is left here; as reject_from: a hard cut
     int layers = 1;             // 2: the second layer of the frame before may hold the point as well

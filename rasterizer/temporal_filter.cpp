@@ -33,6 +33,8 @@ const TemporalFilterSettings& checked(const TemporalFilterRequest& request) {
     return settings;
 }
 
+bool reads_normals(const TemporalFilterSettings& settings) { return settings.rejection == HistoryRejection::plane; }
+
 bool writes_weight(const PassResources& resources, const TemporalFilterRequest& request) {
     return resources.is_read(layer_prefix(request.layer) + request.weight);
 }
@@ -54,6 +56,7 @@ ShaderDefines defines(const PassResources& resources, const TemporalFilterReques
     const TemporalFilterSettings& settings = checked(request);
     ShaderDefines result = reprojection.defines();
     result.emplace_back("ALPHA", shader_literal(settings.alpha));
+    result.emplace_back("FROM_PLANE", settings.rejection == HistoryRejection::plane ? "1" : "0");
     result.emplace_back("REJECT_FROM", shader_literal(settings.reject_from));
     result.emplace_back("REJECT_TO", shader_literal(settings.reject_to));
     result.emplace_back("HARD_CUT", settings.reject_from == settings.reject_to ? "1" : "0");
@@ -76,7 +79,7 @@ GlFramebuffer make_target(const PassResources& resources, const TemporalFilterRe
 TemporalFilterPass::TemporalFilterPass(const PassResources& resources, const TemporalFilterRequest& request)
     : noisy_(resources.planes.get(request.input)),
       depth_(resources.planes.get("depth")),
-      normal_(resources.planes.get("normal")),
+      normal_(reads_normals(request.settings) ? &resources.planes.get("normal") : nullptr),
       previous_depth_(resources.planes.get(gbuffer_history)),
       is_first_(!resources.planes.has(request.output)),
       reprojection_(resources, history_displacement_unit),
@@ -91,7 +94,7 @@ void TemporalFilterPass::execute(const PassFrame& frame) {
     if (is_first_) history_.trade_places();
     noisy_.bind(0);
     depth_.bind(1);
-    normal_.bind(2);
+    if (normal_) normal_->bind(2);
     previous_depth_.bind(3);
     history_.before().bind(4);
     reprojection_.bind();
@@ -100,17 +103,22 @@ void TemporalFilterPass::execute(const PassFrame& frame) {
     draw_.draw(target_.now());
 }
 
+std::string_view to_string(HistoryRejection rejection) {
+    return rejection == HistoryRejection::plane ? "plane" : "mara2016";
+}
+
 bool taps_vary(const TemporalFilterSettings& settings) { return settings.alpha > 0.0f && settings.vary_taps; }
 
 PassDeclaration declare_temporal_filter(const Scene& scene, const TemporalFilterRequest& request) {
     if (request.settings.alpha != 0.0f) checked(request);
     const std::string prefix = layer_prefix(request.layer);
     PassDeclaration pass{.name = request.name,
-                         .inputs = {prefix + request.input, prefix + "depth", prefix + "normal"},
+                         .inputs = {prefix + request.input, prefix + "depth"},
                          .outputs = {prefix + request.output},
                          .create = [request](const PassResources& resources) {
                              return std::make_unique<TemporalFilterPass>(resources, request);
                          }};
+    if (reads_normals(request.settings)) pass.inputs.push_back(prefix + "normal");
     // The second layer's own, or both.
     for (int layer = 0; layer < 2; ++layer) {
         if (layer == request.layer || request.settings.layers == 2)
@@ -119,8 +127,9 @@ PassDeclaration declare_temporal_filter(const Scene& scene, const TemporalFilter
     for (std::string& plane : Reprojection::inputs(scene, request.layer)) pass.inputs.push_back(std::move(plane));
     if (!request.weight.empty()) pass.outputs.push_back(prefix + request.weight);
     if (request.settings.alpha == 0.0f) pass.disabled = fmt::format("{}.alpha is 0", request.group);
-    pass.remark = fmt::format("alpha {}, {} layer{} of the frame before", request.settings.alpha,
-                              request.settings.layers, request.settings.layers == 1 ? "" : "s");
+    pass.remark = fmt::format("alpha {}, {} layer{} of the frame before, distance from the {}", request.settings.alpha,
+                              request.settings.layers, request.settings.layers == 1 ? "" : "s",
+                              reads_normals(request.settings) ? "plane" : "point");
     return pass;
 }
 

@@ -1,7 +1,8 @@
 // One frame of the temporal filter; temporal_filter.h has the formula.
 //
-// Defines: ALPHA, REJECT_FROM, REJECT_TO (metres), HARD_CUT (0, 1: the two are equal), LAYER (whose surfaces), LAYERS, MARGIN (pixels on each side
-// of which there is no history), WRITE_WEIGHT, and that of reprojection.glsl.
+// Defines: ALPHA, FROM_PLANE (0, 1: distances are those from the plane, not from the point), REJECT_FROM, REJECT_TO
+// (metres), HARD_CUT (0, 1: the two are equal), LAYER (whose surfaces), LAYERS, MARGIN (pixels on each side of which
+// there is no history), WRITE_WEIGHT, and that of reprojection.glsl.
 #include "normal_encoding.glsl"
 #include "reprojection.glsl"
 
@@ -26,17 +27,33 @@ float acceptance(float distance) {
 #endif
 }
 
+// Of what the frame before showed in a pixel from a depth.
+float depth_difference(ivec2 pixel, float expected) {
+    float difference = abs(texelFetch(previous_depth, ivec3(pixel, LAYER), 0).r - expected);
+#if LAYERS == 2
+    difference = min(difference, abs(texelFetch(previous_depth, ivec3(pixel, 1 - LAYER), 0).r - expected));
+#endif
+    return difference;
+}
+
+#if FROM_PLANE
 // Of the surface that a pixel of the frame before showed from the plane through `point` (previous camera space).
 float distance_from_plane(ivec2 pixel, vec3 point, vec3 normal) {
     vec3 ray = previous_camera_space_point(vec2(pixel) + 0.5, 1.0);
     float expected = dot(normal, point) / dot(normal, ray);
     // Nearly edge-on the plane is met anywhere, or nowhere.
     if (!(expected > -0.5 * point.z && expected < -2.0 * point.z)) expected = -point.z;
-    float difference = abs(texelFetch(previous_depth, ivec3(pixel, LAYER), 0).r - expected);
-#if LAYERS == 2
-    difference = min(difference, abs(texelFetch(previous_depth, ivec3(pixel, 1 - LAYER), 0).r - expected));
+    return depth_difference(pixel, expected) * length(ray);
+}
+#else
+// Of what the frame before showed in a point's place from the point: both lie on one ray.
+float distance_from_point(ivec2 pixel, vec3 point) {
+    return depth_difference(pixel, -point.z) * length(point) / -point.z;
+}
 #endif
-    return difference * length(ray);
+
+bool has_kept(ivec2 pixel) {
+    return all(greaterThanEqual(pixel, ivec2(MARGIN))) && all(lessThan(pixel, ivec2(view_size) - MARGIN));
 }
 
 void main() {
@@ -53,8 +70,14 @@ void main() {
     if (!place.in_front || any(lessThan(place.pixel, vec2(-1.0))) || any(greaterThan(place.pixel, view_size + 1.0))) {
         return;
     }
+#if FROM_PLANE
     vec3 normal = normal_of_texel(texelFetch(normal_plane, ivec3(pixel, LAYER), 0));
     normal = mat3(previous_camera_from_camera) * camera_space_direction(previous_normal(pixel, LAYER, normal));
+#else
+    ivec2 then = ivec2(floor(place.pixel));
+    if (!has_kept(then)) return;
+    float distance = distance_from_point(then, place.point);
+#endif
 
     vec2 corner = floor(place.pixel - 0.5);
     vec2 fraction = place.pixel - 0.5 - corner;
@@ -65,9 +88,11 @@ void main() {
         ivec2 tap = ivec2(corner) + side;
         vec2 share = mix(1.0 - fraction, fraction, vec2(side));
         float weight = share.x * share.y;
-        bool is_kept = all(greaterThanEqual(tap, ivec2(MARGIN))) && all(lessThan(tap, ivec2(view_size) - MARGIN));
-        if (!is_kept || weight == 0.0) continue;
-        weight *= ALPHA * acceptance(distance_from_plane(tap, place.point, normal));
+        if (!has_kept(tap) || weight == 0.0) continue;
+#if FROM_PLANE
+        float distance = distance_from_plane(tap, place.point, normal);
+#endif
+        weight *= ALPHA * acceptance(distance);
         if (weight == 0.0) continue;
         difference += weight * (texelFetch(history, ivec3(tap, LAYER), 0) - value);
         total += weight;

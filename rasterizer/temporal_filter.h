@@ -6,13 +6,17 @@
 //     E_t = E (1 - w) + sum_i w_i E_(t-1),i        w = sum_i w_i
 //     w_i = alpha b_i (1 - smoothstep(reject_from, reject_to, d_i))
 //
-// d_i is how far, along the ray through pixel i, the surface that the frame before had there lies from the plane
-// through X (where X was then) with the normal that X had then; the nearer one of both layers where `layers` is 2.
-// Metres. A plain distance of points would reject far and slanted surfaces for the half pixel that the grid is off, as
-// the sources do.
+// d_i, in metres, is the distance from the surface that the frame before had; the nearer one of both layers where
+// `layers` is 2:
+//     plane     how far that surface lies, along the ray through pixel i, from the plane through X (where X was then)
+//               with the normal that X had then
+//     mara2016  how far X, where it was then, lies from the point that was shown in its place, the same for all i: on
+//               the ray to X, as deep as the surface in the pixel that X falls into. Without such a pixel there is no
+//               history. It rejects far and slanted surfaces for the half pixel that X is off the grid.
 //   Sources: alpha and the rule "within 1 cm of either layer": Mara et al. 2016, "Deep G-Buffers for Stable Global
 //   Illumination Approximation" (alpha 0.85; 0.95 and more lags; reject_from = reject_to = 0.01, layers = 2); the soft
-//   limits 0.05 and 0.07 m, one layer: the temporal filter that its authors ship with G3D (alpha 0.92).
+//   limits 0.05 and 0.07 m, one layer: the temporal filter that its authors ship with G3D (alpha 0.92). Both measure
+//   the distance of points; where between pixels their depth is read is theirs to know (a sampler's setting).
 //
 // What is kept is that of the pixels of the same layer. With layers = 2 a point that has just come to light takes over
 // what its occluder received, as the paper has it.
@@ -28,6 +32,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "rasterizer/fullscreen.h"
 #include "rasterizer/inner_area.h"
@@ -54,7 +59,7 @@ public:
 private:
     const GlTexture& noisy_;
     const GlTexture& depth_;
-    const GlTexture& normal_;
+    const GlTexture* normal_;  // where distances are those from a plane
     const GlTexture& previous_depth_;
     bool is_first_;  // of the passes that fill the layers of the output
     Reprojection reprojection_;
@@ -64,6 +69,8 @@ private:
     FullscreenDraw draw_;
     PlaneTarget target_;
 };
+
+std::string_view to_string(HistoryRejection rejection);
 
 // Whether the taps that the filter averages are others in each frame.
 bool taps_vary(const TemporalFilterSettings& settings);

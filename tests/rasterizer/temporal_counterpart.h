@@ -38,8 +38,8 @@ inline glm::dvec3 ray_through(const View& view, double x, double y) {
 
 inline glm::dvec3 eye_of(const View& view) { return glm::dvec3(view.camera().position()); }
 
-// One frame, with the view that it was rendered with, and how each instance that moves has moved since the frame before:
-// matrices that take world space of now to world space of then.
+// One frame, with the view that it was rendered with, and how each instance that moves has moved since the frame
+// before: matrices that take world space of now to world space of then.
 struct RenderedFrame {
     View view;
     Frame planes;
@@ -80,8 +80,8 @@ inline std::optional<SurfacePoint> surface_point(const RenderedFrame& frame, int
     return point;
 }
 
-// Where the normal of a surface point was pointing in the frame before: turned as the instance that the point belongs to
-// has turned, which is the one whose motion brings it to where it was.
+// Where the normal of a surface point was pointing in the frame before: turned as the instance that the point belongs
+// to has turned, which is the one whose motion brings it to where it was.
 inline glm::dvec3 normal_before(const RenderedFrame& frame, const SurfacePoint& point, const glm::dvec3& normal) {
     if (point.before == point.now) return normal;
     glm::dvec3 found = normal;
@@ -99,6 +99,13 @@ struct Accumulated {
     double value = 0.0, weight = 0.0;
 };
 
+// What is left of the weight at a distance in metres.
+inline double acceptance(const TemporalFilterSettings& settings, double distance) {
+    const double range = settings.reject_to - settings.reject_from, beyond = distance - settings.reject_from;
+    const double t = range > 0.0 ? std::clamp(beyond / range, 0.0, 1.0) : beyond > 0.0 ? 1.0 : 0.0;
+    return 1.0 - t * t * (3.0 - 2.0 * t);
+}
+
 // What the filter makes of `this_frame` at a pixel, `history` being its result of the frame before; both of `layer`.
 inline Accumulated accumulate(const RenderedFrame& now, const RenderedFrame& before, const Image& this_frame,
                               const Image& history, const TemporalFilterSettings& settings, int x, int y,
@@ -112,6 +119,23 @@ inline Accumulated accumulate(const RenderedFrame& now, const RenderedFrame& bef
     if (place.z <= 0.0) return result;
     const glm::dvec3 normal = normal_before(now, *point, vector_of(now.planes.plane(prefix + "normal"), x, y));
     const glm::dvec3 from_eye = point->before - eye_of(before.view);
+    const auto nearest_to = [&](const glm::dvec3& ray, double expected, double column, double row) {
+        double distance = std::numeric_limits<double>::infinity();
+        for (const std::string& shown : prefixes) {
+            // Of its own layer, or of both.
+            if (shown != prefix && settings.layers == 1) continue;
+            const double depth =
+                before.planes.plane(shown + "depth").at(static_cast<int>(column), static_cast<int>(row));
+            distance = std::min(distance, std::abs(depth - expected) * glm::length(ray));
+        }
+        return distance;
+    };
+    double from_point = 0.0;
+    if (settings.rejection == HistoryRejection::mara2016) {
+        const double column = std::floor(place.x), row = std::floor(place.y);
+        if (column < 0 || row < 0 || column >= this_frame.width() || row >= this_frame.height()) return result;
+        from_point = nearest_to(ray_through(before.view, place.x, place.y), place.z, column, row);
+    }
     const double left = std::floor(place.x - 0.5), top = std::floor(place.y - 0.5);
     for (const double column : {left, left + 1.0}) {
         for (const double row : {top, top + 1.0}) {
@@ -120,17 +144,9 @@ inline Accumulated accumulate(const RenderedFrame& now, const RenderedFrame& bef
             const glm::dvec3 ray = ray_through(before.view, column + 0.5, row + 0.5);
             double expected = glm::dot(normal, from_eye) / glm::dot(normal, ray);
             if (!(expected > 0.5 * place.z && expected < 2.0 * place.z)) expected = place.z;
-            double distance = std::numeric_limits<double>::infinity();
-            for (const std::string& shown : prefixes) {
-                // Of its own layer, or of both.
-                if (shown != prefix && settings.layers == 1) continue;
-                const double depth =
-                    before.planes.plane(shown + "depth").at(static_cast<int>(column), static_cast<int>(row));
-                distance = std::min(distance, std::abs(depth - expected) * glm::length(ray));
-            }
-            const double range = settings.reject_to - settings.reject_from, beyond = distance - settings.reject_from;
-            const double t = range > 0.0 ? std::clamp(beyond / range, 0.0, 1.0) : beyond > 0.0 ? 1.0 : 0.0;
-            const double weight = settings.alpha * share * (1.0 - t * t * (3.0 - 2.0 * t));
+            const double distance =
+                settings.rejection == HistoryRejection::mara2016 ? from_point : nearest_to(ray, expected, column, row);
+            const double weight = settings.alpha * share * acceptance(settings, distance);
             if (weight == 0.0) continue;
             result.value +=
                 weight * (history.at(static_cast<int>(column), static_cast<int>(row)) - this_frame.at(x, y));
