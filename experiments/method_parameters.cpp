@@ -19,9 +19,11 @@ void add_blur(std::vector<MethodParameter>& parameters, const std::string& prefi
                           {prefix + "kind", choice(blur.kind, {"bilateral", "gaussian_2015", "gaussian_2015_listing"})},
                           {prefix + "radius", &blur.radius, 0, 64},
                           {prefix + "step", &blur.step, 1, 64},
+                          {prefix + "weights", choice(blur.weights, {"gaussian", "g3d"})},
                           {prefix + "depth_sharpness", &blur.depth_sharpness, 0, 1e6},
                           {prefix + "normal_sharpness", &blur.normal_sharpness, 0, 1e6},
                           {prefix + "plane_sharpness", &blur.plane_sharpness, 0, 1e6},
+                          {prefix + "plane_exemption", &blur.plane_exemption, 0, 1e6},
                           {prefix + "monotonic", &blur.monotonic},
                           {prefix + "depth_key_bits", &blur.depth_key_bits, 8, 32},
                       });

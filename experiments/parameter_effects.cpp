@@ -38,6 +38,7 @@ std::string blur_reason(const BilateralBlurSettings& blur, std::string_view grou
     if (name == "depth_key_bits" && blur.depth_sharpness == 0.0f) return fmt::format("{}depth_sharpness = 0", group);
     // It compares the weight of a tap with those nearer to the centre.
     if (name == "monotonic" && blur.radius == 1) return fmt::format("{}radius = 1", group);
+    if (name == "plane_exemption" && blur.plane_sharpness == 0.0f) return fmt::format("{}plane_sharpness = 0", group);
     return "";
 }
 

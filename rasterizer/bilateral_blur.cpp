@@ -1,6 +1,7 @@
 #include "rasterizer/bilateral_blur.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -14,6 +15,13 @@ namespace {
 
 constexpr GLuint blur_key_unit = 4;
 
+// What G3D weighs the centre and the pixels beside it with, before it adds 0.3 to all but the centre.
+constexpr std::array<float, 2> g3d_weights_1 = {0.5f, 0.25f};
+constexpr std::array<float, 5> g3d_weights_4 = {0.153170f, 0.144893f, 0.122649f, 0.092902f, 0.062970f};
+constexpr std::array<float, 7> g3d_weights_6 = {0.111220f, 0.107798f, 0.098151f, 0.083953f,
+                                                0.067458f, 0.050920f, 0.036108f};
+constexpr float g3d_weight_of_neighbours = 0.3f;
+
 void require_sound(const BilateralBlurRequest& request) {
     const BilateralBlurSettings& settings = request.settings;
     if (settings.radius < 1 || settings.radius > 64 || settings.step < 1) {
@@ -25,6 +33,16 @@ void require_sound(const BilateralBlurRequest& request) {
     if (settings.depth_key_bits != 8 && settings.depth_key_bits != 16 && settings.depth_key_bits != 32) {
         throw MethodError(
             fmt::format("{}: the blur's depth_key_bits is {}; use 8, 16 or 32", request.name, settings.depth_key_bits));
+    }
+    if (settings.weights == BlurWeights::g3d && settings.radius > 6) {
+        throw MethodError(fmt::format(
+            "{}: blur weights \"g3d\" are known for a radius of 1 to 6, but the radius is {}; lower it, or set "
+            "weights to \"gaussian\"",
+            request.name, settings.radius));
+    }
+    if (!(settings.plane_exemption >= 0.0f && std::isfinite(settings.plane_exemption))) {
+        throw MethodError(fmt::format("{}: blur plane_exemption {} must be 0 or more square metres and finite",
+                                      request.name, settings.plane_exemption));
     }
     for (const float sharpness : {settings.depth_sharpness, settings.normal_sharpness, settings.plane_sharpness}) {
         if (!(sharpness >= 0.0f && std::isfinite(sharpness))) {
@@ -44,12 +62,25 @@ std::string key_plane(const BilateralBlurSettings& settings) {
     return compared && stored ? depth_key_plane(settings.depth_key_bits) : "";
 }
 
-std::string gaussian_weights(const BilateralBlurSettings& settings) {
-    std::string weights;
+float g3d_weight(int radius, int distance) {
+    const auto i = static_cast<std::size_t>(distance);
+    const float weight = radius == 1 ? g3d_weights_1.at(i) : radius <= 4 ? g3d_weights_4.at(i) : g3d_weights_6.at(i);
+    return distance == 0 ? weight : g3d_weight_of_neighbours + weight;
+}
+
+// Of a pixel so many steps away, before what its surface tells.
+float weight_of_distance(const BilateralBlurSettings& settings, int distance) {
+    if (compares_surfaces(settings) && settings.weights == BlurWeights::g3d)
+        return g3d_weight(settings.radius, distance);
     const double sigma = settings.radius / (compares_surfaces(settings) ? 2.0 : 3.0);
+    return static_cast<float>(std::exp(-0.5 * distance * distance / (sigma * sigma)));
+}
+
+std::string weights_of_distances(const BilateralBlurSettings& settings) {
+    std::string weights;
     for (int i = 0; i <= settings.radius; ++i) {
         weights += i == 0 ? "" : ", ";
-        weights += shader_literal(static_cast<float>(std::exp(-0.5 * i * i / (sigma * sigma))));
+        weights += shader_literal(weight_of_distance(settings, i));
     }
     return weights;
 }
@@ -65,12 +96,14 @@ ShaderDefines defines_along(const char* direction, const BilateralBlurRequest& r
                              {"GAUSSIAN_2015", "1"},
                              {"GAUSSIAN_2015_LISTING", "2"},
                              {"KIND", std::to_string(static_cast<int>(settings.kind))},
-                             {"GAUSSIAN_WEIGHTS", gaussian_weights(settings)}};
+                             {"WEIGHTS", weights_of_distances(settings)}};
     if (!compares_surfaces(settings)) return defines;
     defines.emplace_back("MONOTONIC", settings.monotonic ? "1" : "0");
     defines.emplace_back("DEPTH_SHARPNESS", shader_literal(settings.depth_sharpness / request.quantity_radius));
     defines.emplace_back("NORMAL_SHARPNESS", shader_literal(settings.normal_sharpness));
     defines.emplace_back("PLANE_SHARPNESS", shader_literal(settings.plane_sharpness));
+    if (settings.plane_exemption > 0.0f)
+        defines.emplace_back("PLANE_EXEMPTION", shader_literal(settings.plane_exemption));
     defines.emplace_back("STORED_KEYS", key_plane(settings).empty() ? "0" : "1");
     return defines;
 }

@@ -1,8 +1,9 @@
 // One direction of the edge-aware blur; bilateral_blur.h has the weights.
 //
-// Defines: LAYER (whose surfaces), DIRECTION (ivec2), BLUR_RADIUS, STEP, GAUSSIAN_WEIGHTS (of distance 0 to BLUR_RADIUS),
-// KIND with the names of its values, and of the bilateral kind: MONOTONIC (0, 1), DEPTH_SHARPNESS (per metre),
-// NORMAL_SHARPNESS, PLANE_SHARPNESS, STORED_KEYS (0: depths are compared as they are).
+// Defines: LAYER (whose surfaces), DIRECTION (ivec2), BLUR_RADIUS, STEP, WEIGHTS (of distance 0 to BLUR_RADIUS), KIND
+// with the names of its values, and of the bilateral kind: MONOTONIC (0, 1), DEPTH_SHARPNESS (per metre),
+// NORMAL_SHARPNESS, PLANE_SHARPNESS, PLANE_EXEMPTION (square metres, where there is one), STORED_KEYS (0: depths are
+// compared as they are).
 
 #include "depth_mip_chain.glsl"
 #include "normal_encoding.glsl"
@@ -17,7 +18,7 @@ uniform int noisy_layer;
 
 layout(location = 0) out vec4 smoothed;
 
-const float gaussian[BLUR_RADIUS + 1] = float[](GAUSSIAN_WEIGHTS);
+const float distance_weight[BLUR_RADIUS + 1] = float[](WEIGHTS);
 
 #if KIND == BILATERAL
 struct Surface {
@@ -45,6 +46,9 @@ float edge_weight(Surface centre, Surface tap) {
     float depth_weight = max(0.0, 1.0 - DEPTH_SHARPNESS * abs(tap.key - centre.key));
     float normal_weight = max(0.0, 1.0 - NORMAL_SHARPNESS * (1.0 - dot(centre.normal, tap.normal)));
     float plane_weight = max(0.0, 1.0 - 2.0 * PLANE_SHARPNESS * off_plane);
+#ifdef PLANE_EXEMPTION
+    if (dot(offset, offset) < PLANE_EXEMPTION) plane_weight = 1.0;
+#endif
     return is_background(tap.depth) ? 0.0 : depth_weight * normal_weight * plane_weight * plane_weight;
 }
 #else
@@ -73,7 +77,7 @@ void main() {
 
     // Sums of differences to the centre: a constant image comes out bit for bit.
     vec4 difference = vec4(0.0);
-    float total = gaussian[0];
+    float total = distance_weight[0];
     for (int side = -1; side <= 1; side += 2) {
         float smallest = 1.0;
         for (int i = 1; i <= BLUR_RADIUS; ++i) {
@@ -84,7 +88,7 @@ void main() {
             smallest = min(smallest, edge);
             edge = smallest;
 #endif
-            float weight = gaussian[i] * edge;
+            float weight = distance_weight[i] * edge;
             total += weight;
             difference += weight * (texelFetch(noisy, ivec3(tap, noisy_layer), 0) - value);
         }

@@ -7,6 +7,12 @@
 //     w_depth   = max(0, 1 - depth_sharpness |z - z'| / r)            r: the radius of the blurred quantity
 //     w_normal  = max(0, 1 - normal_sharpness (1 - n.n'))
 //     w_plane   = max(0, 1 - 2 plane_sharpness max(|u.n|, |u.n'|))     u: unit vector between the two points
+//                 1 where their squared distance is less than plane_exemption
+//
+// With weights = g3d the Gaussian gives way to what the filters that Mara et al. ship with G3D have in its place, for R
+// of 1 to 6: t_0 at the centre and 0.3 + t_i elsewhere, of a Gaussian of sum 1 and sigma 3 (R up to 4) or 4 (5 and 6;
+// their comments say 2 and 3), and 0.5 and 0.25 for R = 1. Where R is 2, 3 or 5 the table is that of a larger R, cut
+// off. (They also add 1e-4 to the sum of weights, which darkens by less than a thousandth.)
 //
 // With depth_key_bits of 8 or 16, z and z' in w_depth are what a stored key of so many bits holds of them, the fraction
 // of the far plane (depth_key_pass.h; 8 bits show bands, as implementers report).
@@ -25,9 +31,10 @@
 // Where `monotonic` is set, there is no edge weight (w_depth w_normal w_plane^2) larger than that of the pixels
 // between. Pixels outside the image and background have weight 0; background is left as it is. A constant image stays
 // the same bit for bit.
-//   Source: the filters that Mara et al. ship with G3D, their constants turned into metres; the exemption from the
-//   plane weight that they grant to pixels close in space is left out: it blurs across contacts. The other kinds:
-//   Nielsen 2015 (section 2.5 and listings 3.34 to 3.37), whose program turns background black, which nothing reads.
+//   Source: the filters that Mara et al. ship with G3D, their constants turned into metres. They exempt pixels close in
+//   space from the plane weight (0.001 square metres for ambient obscurance, 0.01 for radiosity), which blurs across
+//   contacts; here none is unless asked for. The other kinds: Nielsen 2015 (section 2.5 and listings 3.34 to 3.37),
+//   whose program turns background black, which nothing reads.
 //   Good for: noise of 10 to 60 taps. Bad for: thin objects, whose few pixels have few neighbours.
 #pragma once
 

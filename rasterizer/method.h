@@ -89,14 +89,20 @@ struct ProbeSettings {
 // tangent plane; or, after Nielsen 2015, depth alone, as the thesis' text has it or as its listing does.
 enum class BlurKind { bilateral, gaussian_2015, gaussian_2015_listing };
 
+// How much a neighbour counts over its distance in pixels, of kind `bilateral`: a Gaussian for any radius, or the
+// tables that G3D has for radii up to 6.
+enum class BlurWeights { gaussian, g3d };
+
 // The separable filter that smooths the noise of few taps along surfaces.
 struct BilateralBlurSettings {
     BlurKind kind = BlurKind::bilateral;
-    int radius = 4;              // taps to each side; 0: no filter
-    int step = 1;                // pixels between taps
+    int radius = 4;  // taps to each side; 0: no filter
+    int step = 1;    // pixels between taps
+    BlurWeights weights = BlurWeights::gaussian;
     float depth_sharpness = 10;  // relative to the filtered quantity's radius: 10 rejects depths a tenth of it away
     float normal_sharpness = 1;  // 1 rejects normals 90 degrees apart, 40 those 13 degrees apart
-    float plane_sharpness = 1;   // rejects points off the centre's tangent plane
+    float plane_sharpness = 1;   // rejects points off the centre's tangent plane...
+    float plane_exemption = 0;   // ...but none whose squared distance is less, in square metres
     bool monotonic = true;       // a weight never rises again beyond an edge
     int depth_key_bits = 32;     // 8, 16: depths are compared as fractions of the far plane of so many bits
 };

@@ -18,6 +18,8 @@ const std::map<std::string, const char*> telling_values = {
     {"gbuffer.guard_band", "8"},
     {"ao.blur.depth_key_bits", "8"},
     {"radiosity.blur.depth_key_bits", "8"},
+    {"ao.blur.plane_exemption", "0.01"},
+    {"radiosity.blur.plane_exemption", "0.01"},
     {"ao.spread_pixels", "9"},
     {"ao.mip_offset", "0"},
     {"radiosity.spread_pixels", "9"},

@@ -19,18 +19,33 @@ inline double edge_weight(const Layers& layers, const BilateralBlurSettings& set
     const glm::dvec3 v = point_at(layers, 0, tap) - point_at(layers, 0, centre);
     const glm::dvec3 n = vector_at(layers, layers.normal[0], centre), m = vector_at(layers, layers.normal[0], tap);
     const double off_plane = std::max(std::abs(glm::dot(v, n)), std::abs(glm::dot(v, m))) / glm::length(v);
-    const double plane = std::max(0.0, 1.0 - 2.0 * settings.plane_sharpness * off_plane);
+    const bool exempt = glm::dot(v, v) < settings.plane_exemption;
+    const double plane = exempt ? 1.0 : std::max(0.0, 1.0 - 2.0 * settings.plane_sharpness * off_plane);
     const double step =
         std::abs(depth_key(layers, settings, depth) - depth_key(layers, settings, depth_at(layers, 0, centre)));
     return std::max(0.0, 1.0 - settings.depth_sharpness * step / radius) *
            std::max(0.0, 1.0 - settings.normal_sharpness * (1.0 - glm::dot(n, m))) * plane * plane;
 }
 
+// Of a pixel `i` steps away, the centre's being 1. What G3D has in tables are normalised Gaussians, written out.
+inline double weight_of_distance(const BilateralBlurSettings& settings, int i) {
+    const auto gaussian = [](int distance, double sigma) {
+        return std::exp(-0.5 * distance * distance / (sigma * sigma));
+    };
+    if (settings.weights == BlurWeights::gaussian) return gaussian(i, 0.5 * settings.radius);
+    if (i == 0) return 1.0;
+    if (settings.radius == 1) return (0.3 + 0.25) / 0.5;
+    const int whole_radius = settings.radius <= 4 ? 4 : 6;
+    const double sigma = settings.radius <= 4 ? 3.0 : 4.0;
+    double sum = 1.0;
+    for (int j = 1; j <= whole_radius; ++j) sum += 2.0 * gaussian(j, sigma);
+    return 0.3 * sum + gaussian(i, sigma);
+}
+
 // Blurs `image` along (dx, dy), which is (1, 0) or (0, 1).
 inline Image blurred(const Layers& layers, const BilateralBlurSettings& settings, double radius, const Image& image,
                      int dx, int dy) {
     Image result = image;
-    const double sigma = 0.5 * settings.radius;
     for (int y = 0; y < layers.height(); ++y) {
         for (int x = 0; x < layers.width(); ++x) {
             if (depth_at(layers, 0, {x, y}) == 0.0) continue;
@@ -44,7 +59,7 @@ inline Image blurred(const Layers& layers, const BilateralBlurSettings& settings
                         double edge = inside(layers, tap) ? edge_weight(layers, settings, radius, {x, y}, tap) : 0.0;
                         if (settings.monotonic) edge = smallest = std::min(smallest, edge);
                         if (edge == 0.0) continue;
-                        const double weight = edge * std::exp(-0.5 * i * i / (sigma * sigma));
+                        const double weight = edge * weight_of_distance(settings, i);
                         sum += weight * image.at(tap.x, layers.height() - 1 - tap.y, channel);
                         total += weight;
                     }

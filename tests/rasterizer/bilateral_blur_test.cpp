@@ -27,7 +27,14 @@ TEST_P(BilateralBlurTest, AgreesWithItsCounterpart) {
     for (const BilateralBlurSettings& settings :
          {BilateralBlurSettings{}, radiosity_default, BilateralBlurSettings{.radius = 7, .step = 3, .monotonic = false},
           BilateralBlurSettings{.radius = 1, .depth_sharpness = 1.0f}, BilateralBlurSettings{.depth_key_bits = 16},
-          BilateralBlurSettings{.depth_sharpness = 0.5f, .depth_key_bits = 8}}) {
+          BilateralBlurSettings{.depth_sharpness = 0.5f, .depth_key_bits = 8},
+          BilateralBlurSettings{.depth_sharpness = 1.0f, .plane_exemption = 0.001f},
+          BilateralBlurSettings{.radius = 6,
+          .weights = BlurWeights::g3d,
+          .depth_sharpness = 0.0f,
+          .normal_sharpness = 40.0f,
+          .plane_sharpness = 0.5f,
+          .plane_exemption = 0.01f}}) {
         for (const counterpart::Layers& layers :
              {layers_of_patches(view, floor_and_wall), counterpart::random_layers(view, 6)}) {
             SCOPED_TRACE(testing::Message() << "radius " << settings.radius << ", step " << settings.step);
@@ -44,6 +51,47 @@ TEST_P(BilateralBlurTest, AgreesWithItsCounterpart) {
             }
         }
     }
+}
+
+TEST_P(BilateralBlurTest, TheTablesOfG3DAreGaussiansThatAgreeWithTheirCounterpartForEachRadius) {
+    const View view = slanted_view(40, 30);
+    const counterpart::Layers layers = layers_of_patches(view, floor_and_wall);
+    const Image image = noise(40, 30, 1, 11);
+    for (int radius = 1; radius <= 6; ++radius) {
+        const BilateralBlurSettings settings{.radius = radius, .step = 2, .weights = BlurWeights::g3d};
+        const Image actual = blur(context(), layers, settings, image);
+        ScreenSpaceRun encoded(context(), layers, Method{}, {.planes = {"depth"}});
+        const Image rows = counterpart::blurred(encoded.layers(), settings, blurred_radius, image, 1, 0);
+        const Image expected = counterpart::blurred(encoded.layers(), settings, blurred_radius, rows, 0, 1);
+        // As above; the tables have six digits.
+        for (std::size_t i = 0; i < actual.values().size(); ++i)
+            ASSERT_NEAR(actual.values()[i], expected.values()[i], 5e-4) << "radius " << radius << ", value " << i;
+    }
+}
+
+// What the exemption costs: light leaks between surfaces that touch.
+TEST_P(BilateralBlurTest, PointsExemptFromThePlaneAreBlurredAcrossContacts) {
+    // A board 2 cm before a wall, both facing the camera.
+    const counterpart::Layers layers = layers_of_patches(
+        slanted_view(60, 60), {wall[0], {{-1.0f, -1.0f, -5.98f}, {2.0f, 0.0f, 0.0f}, {0.0f, 2.0f, 0.0f}}});
+    Image image(60, 60, 1);
+    const auto on_board = [&](int x, int y) { return layers.depth[0].at(x, y) < 5.99f; };
+    for (int y = 0; y < 60; ++y) {
+        for (int x = 0; x < 60; ++x) image.at(x, y) = on_board(x, y) ? 1.0f : 0.0f;
+    }
+    const auto leaked = [&](float exemption) {
+        // A pixel is 0.1 m wide there: depth alone would tell nothing.
+        const Image actual =
+            blur(context(), layers, {.depth_sharpness = 0.0f, .plane_sharpness = 50.0f, .plane_exemption = exemption},
+                 image);
+        double sum = 0.0;
+        for (int y = 0; y < 60; ++y) {
+            for (int x = 0; x < 60; ++x) sum += on_board(x, y) ? 0.0 : actual.at(x, y);
+        }
+        return sum;
+    };
+    EXPECT_EQ(leaked(0.0f), 0.0);
+    EXPECT_GT(leaked(0.02f), 1.0);
 }
 
 TEST_P(BilateralBlurTest, KeysOfFewBitsAreStoredBesideTheDepth) {
@@ -162,7 +210,8 @@ TEST_P(BilateralBlurTest, ParametersOutOfRangeAreRefused) {
     for (const BilateralBlurSettings& settings :
          {BilateralBlurSettings{.radius = 65}, BilateralBlurSettings{.depth_key_bits = 12},
           BilateralBlurSettings{.step = 0}, BilateralBlurSettings{.depth_sharpness = -1.0f},
-          BilateralBlurSettings{.plane_sharpness = INFINITY}}) {
+          BilateralBlurSettings{.plane_sharpness = INFINITY}, BilateralBlurSettings{.plane_exemption = -1.0f},
+          BilateralBlurSettings{.radius = 7, .weights = BlurWeights::g3d}}) {
         EXPECT_THROW(blur(context(), layers, settings, noise(8, 8, 1, 11)), MethodError);
     }
 }
