@@ -65,6 +65,8 @@ void add_temporal(std::vector<MethodParameter>& parameters, const std::string& p
 
 std::vector<MethodParameter> method_parameters(Method& m) {
     const std::vector<std::string> sources = {"method", "truth"};
+    const std::vector<std::string> tap_patterns = {"sao2012", "nielsen2015"};
+    const std::vector<std::string> mip_tap_points = {"exact", "sao2012"};
     const std::vector<std::string> ambient_sources = {"none", "ambient", "environment", "probe"};
     std::vector<MethodParameter> parameters = {
         {"gbuffer.source", choice(m.gbuffer.source, sources)},
@@ -108,8 +110,9 @@ std::vector<MethodParameter> method_parameters(Method& m) {
         {"ao.estimator", choice(m.ao.estimator, {"mara2016", "g3d_demo", "sao2012", "sao2012_undivided", "alchemy2011",
                                                  "nielsen2015", "linear"})},
         {"ao.samples", &m.ao.samples, 1, 1000},
+        {"ao.pattern", choice(m.ao.pattern, tap_patterns)},
         {"ao.layers", &m.ao.layers, 1, 2},
-        {"ao.normals", choice(m.ao.normals, {"interpolated", "face"})},
+        {"ao.normals", choice(m.ao.normals, {"interpolated", "face", "g3d_demo"})},
         {"ao.bias", &m.ao.bias, 0, 1e3},
         {"ao.epsilon", &m.ao.epsilon, 0, 1e3},
         {"ao.intensity", &m.ao.intensity, 0, 1e6},
@@ -117,6 +120,7 @@ std::vector<MethodParameter> method_parameters(Method& m) {
         {"ao.spread_pixels", &m.ao.spread_pixels, 0, 4096},
         {"ao.use_mip_chain", &m.ao.use_mip_chain},
         {"ao.mip_offset", &m.ao.mip_offset, 0, 16},
+        {"ao.mip_points", choice(m.ao.mip_points, mip_tap_points)},
     };
     add_blur(parameters, "ao.blur.", m.ao.blur);
     add_temporal(parameters, "ao.temporal.", m.ao.temporal);
@@ -125,6 +129,7 @@ std::vector<MethodParameter> method_parameters(Method& m) {
                           {"radiosity.enabled", &m.radiosity.enabled},
                           {"radiosity.estimator", choice(m.radiosity.estimator, {"mara2016", "nielsen2015"})},
                           {"radiosity.samples", &m.radiosity.samples, 1, 1000},
+                          {"radiosity.pattern", choice(m.radiosity.pattern, tap_patterns)},
                           {"radiosity.layers", &m.radiosity.layers, 1, 2},
                           {"radiosity.emitters_shine", &m.radiosity.emitters_shine},
                           {"radiosity.radius", &m.radiosity.radius, 1e-6, no_limit},
@@ -134,6 +139,7 @@ std::vector<MethodParameter> method_parameters(Method& m) {
                           {"radiosity.use_mip_chain", &m.radiosity.use_mip_chain},
                           {"radiosity.mip_offset", &m.radiosity.mip_offset, 0, 16},
                           {"radiosity.minimum_mip_level", &m.radiosity.minimum_mip_level, 0, 5},
+                          {"radiosity.mip_points", choice(m.radiosity.mip_points, mip_tap_points)},
                           {"radiosity.mip_normals_and_radiance", &m.radiosity.mip_normals_and_radiance},
                           {"radiosity.bounces", &m.radiosity.bounces, 1, most_bounces},
                           {"radiosity.second_layer", choice(m.radiosity.second_layer, {"reuse", "gather", "none"})},

@@ -248,12 +248,9 @@ std::string tap_reason(const Method& method, std::string_view name) {
     if (name == "ao.epsilon" && estimator == AmbientObscuranceEstimator::sao2012_undivided) {
         return "ao.estimator = \"sao2012_undivided\", which divides by nothing";
     }
-    if (!method.ao.use_mip_chain && name == "ao.mip_offset") return "ao.use_mip_chain = false";
-    constexpr std::array of_chain = {"radiosity.mip_offset", "radiosity.minimum_mip_level",
-                                     "radiosity.mip_normals_and_radiance"};
-    if (!method.radiosity.use_mip_chain && is_one_of(name, of_chain)) {
-        return "radiosity.use_mip_chain = false";
-    }
+    if (!method.ao.use_mip_chain && name.starts_with("ao.mip_")) return "ao.use_mip_chain = false";
+    const bool of_chain = name == "radiosity.minimum_mip_level" || name.starts_with("radiosity.mip_");
+    if (!method.radiosity.use_mip_chain && of_chain) return "radiosity.use_mip_chain = false";
     if (name == "radiosity.mip_offset" && method.radiosity.minimum_mip_level == coarsest_mip_level)
         return fmt::format("radiosity.minimum_mip_level = {}, the coarsest", coarsest_mip_level);
     return "";

@@ -31,7 +31,8 @@ std::string depth_plane(const Method& method) {
     return method.ao.use_mip_chain ? std::string(depth_mip_chain_plane) : "depth";
 }
 
-void require_sound(const AmbientObscuranceSettings& settings, const Quantities& quantities) {
+void require_sound(const Method& method, const Quantities& quantities) {
+    const AmbientObscuranceSettings& settings = method.ao;
     const float radius = quantities.ao_radius;
     if (!(radius > 0.0f && std::isfinite(radius))) {
         throw MethodError(
@@ -59,6 +60,7 @@ void require_sound(const AmbientObscuranceSettings& settings, const Quantities& 
     if (settings.mip_offset < 0) {
         throw MethodError(fmt::format("ao.mip_offset is {}; use 0 or more (the source: 3)", settings.mip_offset));
     }
+    require_points_at_taps("ao", settings.use_mip_chain, settings.mip_points, method);
 }
 
 std::string in_capitals(std::string_view name) {
@@ -69,8 +71,8 @@ std::string in_capitals(std::string_view name) {
 
 ShaderDefines shader_defines(const PassResources& resources) {
     const AmbientObscuranceSettings& settings = resources.method.ao;
-    require_sound(settings, resources.quantities);
-    ShaderDefines defines = SampleSpiral::defines(settings.samples, taps_vary(settings.temporal));
+    require_sound(resources.method, resources.quantities);
+    ShaderDefines defines = SampleSpiral::defines(settings.samples, settings.pattern, taps_vary(settings.temporal));
     using enum AmbientObscuranceEstimator;
     for (const auto estimator : {mara2016, g3d_demo, sao2012, sao2012_undivided, alchemy2011, nielsen2015, linear}) {
         defines.emplace_back(in_capitals(to_string(estimator)), std::to_string(static_cast<int>(estimator)));
@@ -80,7 +82,9 @@ ShaderDefines shader_defines(const PassResources& resources) {
     const int coarsest = coarsest_mip(resources.planes.width(), resources.planes.height());
     const ShaderDefines chosen = {{"ESTIMATOR", in_capitals(to_string(settings.estimator))},
                                   {"LAYERS", std::to_string(settings.layers)},
-                                  {"FACE_NORMALS", settings.normals == ObscuranceNormals::face ? "1" : "0"},
+                                  {"FACE_NORMALS", reads_normals(resources.method) ? "0" : "1"},
+                                  {"G3D_NORMALS", settings.normals == ObscuranceNormals::g3d_demo ? "1" : "0"},
+                                  {"LONGEST_NORMAL", shader_literal(longest_g3d_normal)},
                                   {"SPREAD_PIXELS", std::to_string(settings.spread_pixels)},
                                   {"LEAST_SINE", shader_literal(least_hit_sine)},
                                   {"EXPONENT", shader_literal(settings.exponent)},
@@ -89,6 +93,7 @@ ShaderDefines shader_defines(const PassResources& resources) {
                                   {"EPSILON", shader_literal(settings.epsilon)},
                                   {"INTENSITY", shader_literal(settings.intensity)},
                                   {"MIP_OFFSET", std::to_string(settings.mip_offset)},
+                                  {"POINTS_AT_TAPS", settings.mip_points == MipTapPoint::sao2012 ? "1" : "0"},
                                   {"COARSEST_LEVEL", std::to_string(settings.use_mip_chain ? coarsest : 0)}};
     defines.insert(defines.end(), chosen.begin(), chosen.end());
     return defines;

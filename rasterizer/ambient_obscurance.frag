@@ -1,8 +1,9 @@
 // Ambient visibility of each pixel of layer 0; ambient_obscurance.h has the formulas and the names of the estimators.
 //
-// Defines: LAYERS, ESTIMATOR with the names of its values, FACE_NORMALS (0, 1), RADIUS (metres), SPREAD_PIXELS (0: the
+// Defines: LAYERS, ESTIMATOR with the names of its values, FACE_NORMALS (0, 1), G3D_NORMALS (0, 1: of these, those as
+// G3D has them), LONGEST_NORMAL (of these, over the square of the depth), RADIUS (metres), SPREAD_PIXELS (0: the
 // radius as it projects), LEAST_SINE (of a hit over the tangent plane), BIAS, EPSILON (square metres), INTENSITY,
-// EXPONENT, MIP_OFFSET, COARSEST_LEVEL, and those of falloff.glsl and sample_spiral.glsl.
+// EXPONENT, MIP_OFFSET, COARSEST_LEVEL, POINTS_AT_TAPS (0, 1: points of coarser levels, too), and those of falloff.glsl and sample_spiral.glsl.
 
 #include "depth_mip_chain.glsl"
 #include "falloff.glsl"
@@ -64,7 +65,21 @@ float visibility_from(float mean, vec3 camera_normal) {
 #endif
 }
 
-#if FACE_NORMALS
+#if G3D_NORMALS
+// By the differences within the 2 by 2 pixels; 0 where there is none, or they reach too far.
+vec3 face_normal(ivec2 pixel, float centre_depth, vec3 centre) {
+    ivec2 beside = pixel ^ ivec2(1, 0), above = pixel ^ ivec2(0, 1);
+    if (!is_inside(beside) || !is_inside(above)) return vec3(0.0);
+    float depth_beside = texelFetch(depth, ivec3(beside, 0), 0).r, depth_above = texelFetch(depth, ivec3(above, 0), 0).r;
+    if (is_background(depth_beside) || is_background(depth_above)) return vec3(0.0);
+    vec3 normal = cross(surface_point(beside, 0, depth_beside) - centre, surface_point(above, 0, depth_above) - centre);
+    float square = dot(normal, normal), longest = LONGEST_NORMAL * centre_depth * centre_depth;
+    if (square == 0.0 || square > longest * longest) return vec3(0.0);
+    // Differences to the right and upwards make a normal towards the camera.
+    bool one_is_backwards = ((pixel.x ^ pixel.y) & 1) == 1;
+    return normal * (inversesqrt(square) * (one_is_backwards ? -1.0 : 1.0));
+}
+#elif FACE_NORMALS
 // From the pixel to the one of its two neighbours along an axis whose depth is nearer; 0 where neither shows anything.
 vec3 step_along(ivec2 pixel, ivec2 axis, float centre_depth, vec3 centre) {
     ivec2 ahead = pixel + axis, behind = pixel - axis;
@@ -108,19 +123,24 @@ void main() {
 #if ESTIMATOR == ALCHEMY2011 || ESTIMATOR == NIELSEN2015
     receiver.bias *= centre_depth;
 #endif
-    vec2 spin = spiral_spin(pixel, SPIRAL_JITTER_HALF);
+    vec2 spin = spiral_spin(pixel, SPIRAL_EVEN_JITTER);
+    const float first_tap = float(SPIRAL_EVEN_JITTER) / 65536.0;
     float tap_spacing = radius_pixels / float(SPIRAL_SAMPLES);
 
     vec2 sum = vec2(0.0);
     for (int i = 0; i < SPIRAL_SAMPLES; ++i) {
-        float distance = (float(i) + 0.5) * tap_spacing;
+        float distance = (float(i) + first_tap) * tap_spacing;
 #if ESTIMATOR == G3D_DEMO
         distance = max(distance, 0.75);
 #endif
         ivec2 tap = pixel + ivec2(floor(distance * spiral_direction(i, spin) + 0.5));
         int level = mip_level(distance, MIP_OFFSET, 0, COARSEST_LEVEL);
         ivec2 texel = texel_at(tap, level);
+#if POINTS_AT_TAPS
+        ivec2 source = tap;
+#else
         ivec2 source = pixel_of_texel(texel, level);
+#endif
         vec2 found = obscurance(source, 0, texelFetch(depth, ivec3(texel, 0), level).r, receiver);
 #if LAYERS == 2
         vec2 behind = obscurance(source, 1, texelFetch(depth, ivec3(texel, 1), level).r, receiver);

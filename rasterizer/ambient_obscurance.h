@@ -35,11 +35,18 @@
 //
 // Choices where the sources are silent: a tap outside the image (guard band included) and a tap without a surface
 // obscure nothing; background is fully visible, and so is a pixel whose radius covers less than a pixel. With the MIP
-// chain a far tap is the exact point of the pixel that its texel holds (depth_mip_chain.h), not that pixel's depth at
-// the tap's own position as in the source, which lifts taps off slanted surfaces and darkens them. A face's normal is
-// the cross product of the differences to the points of a pixel beside and a pixel above or below, of each pair the one
-// whose depth is nearer (the source takes derivatives of 2 by 2 pixels, which reach across edges); a pixel without a
-// neighbour on either axis is fully visible.
+// chain a far tap is the exact point of the pixel that its texel holds (depth_mip_chain.h), or with mip_points =
+// sao2012, as in the source, as deep as that pixel's but at the tap's own position, which lifts taps off slanted
+// surfaces and darkens them.
+//
+// Normals of faces are cross products of the differences to the points of a pixel beside and a pixel above or below:
+//
+//     face      of each pair the pixel whose depth is nearer; where an axis has none, all is visible
+//     g3d_demo  the other pixels of the 2 by 2 that a pixel belongs to, counted from the image's corner, as a shader's
+//               finest derivatives have them. They reach across edges, where the product is long: beyond 6e-5 z^2 all
+//               is visible, and so it is where one of the pixels shows nothing. The length is that of images of some
+//               700 lines; a frontal surface has (2 tan(fov / 2) / lines)^2 z^2, so that coarser images lose slanted
+//               surfaces, and then all.
 #pragma once
 
 #include "rasterizer/bilateral_blur.h"
@@ -52,6 +59,9 @@ namespace plumb {
 // nielsen2015 divides by the taps above the tangent plane. On a flat surface all lie in it, and rounding would decide
 // which count; those less than 0.06 degrees above it count for nothing, which float depths and encoded normals resolve.
 constexpr float least_hit_sine = 0.001f;
+
+// How long the product of differences, over the square of the depth, may be for a normal of g3d_demo.
+constexpr float longest_g3d_normal = 6e-5f;
 
 // Writes the plane `ao`, or `ao.unfiltered` where the method blurs it, or else what the temporal filter takes.
 class AmbientObscurancePass final : public Pass {

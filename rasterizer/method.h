@@ -121,6 +121,14 @@ struct TemporalFilterSettings {
     bool vary_taps = true;      // other taps in each frame: without, the filter averages one and the same noise
 };
 
+// How taps spiral around a pixel (sample_spiral.h): as in the code of McGuire, Mara, Luebke 2012 and Mara et al. 2016,
+// or as in Nielsen's thesis.
+enum class TapPattern { sao2012, nielsen2015 };
+
+// Where the point of a tap lies that reads a coarser level: where the pixel has it whose depth the texel holds
+// (depth_mip_chain.h), or, as the code of McGuire, Mara, Luebke 2012 has it, as deep as that at the tap's own position.
+enum class MipTapPoint { exact, sao2012 };
+
 // Which formula turns taps into ambient visibility; each is named after its source (ambient_obscurance.h has them).
 enum class AmbientObscuranceEstimator {
     mara2016,
@@ -132,14 +140,15 @@ enum class AmbientObscuranceEstimator {
     linear
 };
 // Which normal the hemisphere stands on: the surface's own, or that of the face through the neighbouring pixels'
-// points.
-enum class ObscuranceNormals { interpolated, face };
+// points, which are chosen with care, or as the code shipped with G3D does (ambient_obscurance.h).
+enum class ObscuranceNormals { interpolated, face, g3d_demo };
 
 struct AmbientObscuranceSettings {
     bool enabled = true;
     AmbientObscuranceEstimator estimator = AmbientObscuranceEstimator::mara2016;
     int samples = 16;  // taps per pixel, 1..1000
-    int layers = 2;    // 1 or 2, at most those of the G-buffer
+    TapPattern pattern = TapPattern::sao2012;
+    int layers = 2;  // 1 or 2, at most those of the G-buffer
     ObscuranceNormals normals = ObscuranceNormals::interpolated;
     float bias = 0.01f;      // metres; hides self-occlusion on flat surfaces (of alchemy2011, nielsen2015: see there)
     float epsilon = 0.001f;  // square metres; keeps the division by the tap's distance finite
@@ -148,6 +157,7 @@ struct AmbientObscuranceSettings {
     int spread_pixels = 0;      // the taps spread over so many pixels; 0: over the radius as it projects
     bool use_mip_chain = true;  // reads coarser depth for far taps: constant cost over radius
     int mip_offset = 3;         // a tap r' pixels away reads level floor(log2 r') - mip_offset
+    MipTapPoint mip_points = MipTapPoint::exact;
     BilateralBlurSettings blur = {};
     TemporalFilterSettings temporal = {};  // after the blur
 };
@@ -167,7 +177,8 @@ constexpr int most_bounces = 8;  // within a frame
 struct RadiositySettings {
     bool enabled = true;
     RadiosityEstimator estimator = RadiosityEstimator::mara2016;
-    int samples = 32;             // taps per pixel, 1..1000
+    int samples = 32;  // taps per pixel, 1..1000
+    TapPattern pattern = TapPattern::sao2012;
     int layers = 2;               // 1 or 2, at most those of the G-buffer
     bool emitters_shine = false;  // taps also carry what their surface emits: see radiosity.h
     float radius = 1.0f;          // metres
@@ -175,8 +186,9 @@ struct RadiositySettings {
     bool test_tap_normal = true;  // taps must face the receiver
     RadiosityNormalisation normalisation = RadiosityNormalisation::hits;
     bool use_mip_chain = true;
-    int mip_offset = 4;                     // a tap r' pixels away reads level floor(log2 r') - mip_offset
-    int minimum_mip_level = 0;              // 0..5; higher is faster and noisier
+    int mip_offset = 4;         // a tap r' pixels away reads level floor(log2 r') - mip_offset
+    int minimum_mip_level = 0;  // 0..5; higher is faster and noisier
+    MipTapPoint mip_points = MipTapPoint::exact;
     bool mip_normals_and_radiance = false;  // far taps read these from chains, too: the same light, other memory
     int bounces = 1;                        // within a frame, 1..most_bounces
     SecondLayerIndirect second_layer = SecondLayerIndirect::reuse;  // for later bounces

@@ -35,7 +35,8 @@ std::string tap_plane(const RadiositySettings& settings, const std::string& plan
 
 bool emission_is_sent(const RadiositySettings& settings, int bounce) { return settings.emitters_shine && bounce == 1; }
 
-void require_sound_gather(const RadiositySettings& settings) {
+void require_sound_gather(const Method& method) {
+    const RadiositySettings& settings = method.radiosity;
     const bool infinite = std::isinf(settings.radius) && settings.spread_pixels > 0;
     if (!(settings.radius > 0.0f) || !(std::isfinite(settings.radius) || infinite)) {
         throw MethodError(
@@ -65,13 +66,14 @@ void require_sound_gather(const RadiositySettings& settings) {
                         "of them to its default",
                         settings.minimum_mip_level));
     }
+    require_points_at_taps("radiosity", settings.use_mip_chain, settings.mip_points, method);
 }
 
 ShaderDefines shader_defines(const PassResources& resources, int bounce, int layer) {
     const RadiositySettings& settings = resources.method.radiosity;
-    require_sound_gather(settings);
+    require_sound_gather(resources.method);
     const int coarsest = settings.use_mip_chain ? coarsest_mip(resources.planes.width(), resources.planes.height()) : 0;
-    ShaderDefines defines = SampleSpiral::defines(settings.samples, taps_vary(settings.temporal));
+    ShaderDefines defines = SampleSpiral::defines(settings.samples, settings.pattern, taps_vary(settings.temporal));
     const bool nielsen = settings.estimator == RadiosityEstimator::nielsen2015;
     const ShaderDefines chosen = {
         {"MARA2016", "0"},
@@ -91,6 +93,7 @@ ShaderDefines shader_defines(const PassResources& resources, int bounce, int lay
         {"RADIUS", shader_literal(std::min(settings.radius, farthest))},
         {"SPREAD_PIXELS", std::to_string(settings.spread_pixels)},
         {"MIP_OFFSET", std::to_string(settings.mip_offset)},
+        {"POINTS_AT_TAPS", settings.mip_points == MipTapPoint::sao2012 ? "1" : "0"},
         {"FINEST_LEVEL", std::to_string(std::min(settings.minimum_mip_level, coarsest))},
         {"COARSEST_LEVEL", std::to_string(coarsest)}};
     defines.insert(defines.end(), chosen.begin(), chosen.end());

@@ -2,8 +2,9 @@
 //
 // Defines: RECEIVER_LAYER, LAYERS (that taps look at), SENDING_LAYERS (of these: that send light), ESTIMATOR and
 // NORMALISATION with the names of their values, TAPS (in all), TEST_TAP_NORMAL, FAR_TAPS_HIT and EMITTERS_SHINE (0, 1),
-// MIP_NORMALS_AND_RADIANCE (0, 1), RADIUS (metres), SPREAD_PIXELS (0: the radius as it projects), MIP_OFFSET, FINEST_LEVEL, COARSEST_LEVEL, and those of
-// falloff.glsl and sample_spiral.glsl.
+// MIP_NORMALS_AND_RADIANCE (0, 1), RADIUS (metres), SPREAD_PIXELS (0: the radius as it projects), MIP_OFFSET,
+// FINEST_LEVEL, COARSEST_LEVEL, POINTS_AT_TAPS (0, 1: points of coarser levels, too), and those of falloff.glsl and
+// sample_spiral.glsl.
 
 #include "depth_mip_chain.glsl"
 #include "falloff.glsl"
@@ -28,6 +29,7 @@ layout(location = 0) out vec4 irradiance;  // rgb: E; a: confidence
 struct Tap {
     ivec2 texel;   // of the level
     ivec2 source;  // the pixel of level 0 that it holds
+    ivec2 place;   // the pixel whose ray its point lies on
     int level;
 };
 
@@ -51,7 +53,7 @@ vec3 sent_light(Tap tap, int layer) {
 // The light that a tap sends, before 2 pi / M; in alpha whether it counts as a hit.
 vec4 received(Tap tap, int layer, vec3 centre, vec3 camera_normal) {
     float tap_depth = texelFetch(depth, ivec3(tap.texel, layer), tap.level).r;
-    vec3 offset = surface_point(tap.source, layer, tap_depth) - centre;
+    vec3 offset = surface_point(tap.place, layer, tap_depth) - centre;
     float square = dot(offset, offset);
     vec3 direction = offset * inversesqrt(max(square, 1e-30));
     float cosine = dot(direction, camera_normal);
@@ -94,6 +96,11 @@ void main() {
         tap.level = mip_level(distance, MIP_OFFSET, FINEST_LEVEL, COARSEST_LEVEL);
         tap.texel = texel_at(position, tap.level);
         tap.source = pixel_of_texel(tap.texel, tap.level);
+#if POINTS_AT_TAPS
+        tap.place = position;
+#else
+        tap.place = tap.source;
+#endif
         vec4 light = received(tap, 0, centre, camera_normal);
 #if LAYERS == 2
         vec4 second = received(tap, 1, centre, camera_normal);

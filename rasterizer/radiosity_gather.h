@@ -30,9 +30,11 @@
 // like the depth's, as implementers have it: the same texels, so the same light bit for bit, for a pass more and
 // memory, and reads that fit a cache.
 //
+// The point of such a tap is that of the same pixel; with mip_points = sao2012, as the code shipped with G3D has it, it
+// lies as deep as that pixel's but at the tap's own position.
+//
 // Choices where the sources are silent: a tap outside the image (guard band included) or without a surface is no hit.
-// Both estimators take the taps of sample_spiral.h: the
-// thesis offsets its spiral by half a turn's share instead of a hash, and spins it by random numbers.
+// Either estimator takes the taps of either pattern of sample_spiral.h; the thesis goes with pattern = nielsen2015.
 #pragma once
 
 #include "rasterizer/fullscreen.h"

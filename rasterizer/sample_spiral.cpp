@@ -71,18 +71,21 @@ SampleSpiral::SampleSpiral(GlContext& context, int samples) {
     tables_ = GlBuffer(context, sizeof(tables), &tables);
 }
 
-ShaderDefines SampleSpiral::defines(int samples, bool varies_in_time) {
+ShaderDefines SampleSpiral::defines(int samples, TapPattern pattern, bool varies_in_time) {
     constexpr double turns_per_hash = 10.0 / (2.0 * std::numbers::pi);
     const auto wrapped = static_cast<std::uint32_t>((turns_per_hash - std::floor(turns_per_hash)) * 0x1p32);
     // The fraction of the golden ratio in 2^-32 turns.
     const std::uint32_t turns_per_frame = varies_in_time ? 0x9E3779B9u : 0u;
+    const bool nielsen = pattern == TapPattern::nielsen2015;
+    const int half = 0x8000;  // in 2^-16
     const auto turns_per_jitter = static_cast<std::uint32_t>(0x1p16 * spiral_turns(samples) / samples);
     return {{"SPIRAL_BINDING", std::to_string(binding)},
             {"SPIRAL_MAXIMUM_SAMPLES", std::to_string(maximum_spiral_samples)},
             {"SPIRAL_SPIN_COUNT", std::to_string(spiral_spin_count)},
             {"SPIRAL_SPIN_BITS", std::to_string(spiral_spin_bits)},
             {"SPIRAL_SAMPLES", std::to_string(samples)},
-            {"SPIRAL_JITTER_HALF", "32768u"},
+            {"SPIRAL_NIELSEN2015", nielsen ? "1" : "0"},
+            {"SPIRAL_EVEN_JITTER", fmt::format("{}u", nielsen ? half / spiral_turns(samples) : half)},
             {"SPIRAL_TURNS_PER_HASH", fmt::format("{}u", wrapped)},  // in 2^-32 turns
             {"SPIRAL_TURNS_PER_FRAME", fmt::format("{}u", turns_per_frame)},
             {"SPIRAL_TURNS_PER_JITTER", fmt::format("{}u", turns_per_jitter)}};  // in 2^-16 turns: tau / N

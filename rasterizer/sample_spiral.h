@@ -1,15 +1,21 @@
 // The taps of the screen-space passes: N points on a spiral around a pixel, spun by a hash of the pixel.
 //
 // Tap i of N lies at the fraction alpha = (i + jitter) / N of the disc's radius and at alpha tau(N) turns plus the
-// pixel's spin. tau(N) is the number of turns that spreads N taps evenly over the disc; the jitter is one half, or
-// differs from pixel to pixel between 0.1 and 0.9.
-//   Source: McGuire, Mara, Luebke 2012, "Scalable Ambient Obscurance"; tau, hash and jitter: its authors' public code.
+// pixel's spin. tau(N) is the number of turns that spreads N taps evenly over the disc. The patterns differ in the
+// rest:
+//
+//     sao2012      jitter one half (ambient obscurance), or from pixel to pixel between 0.1 and 0.9 (radiosity);
+//                  spin(x, y) = 10 ((3 x) xor (y + x y)) radians
+//     nielsen2015  jitter 0.5 / tau(N); spin: a random number for each pixel, even in [0, 2 pi): there from a texture
+//                  of them, here an integer hash of the pixel
+//
+//   Sources: McGuire, Mara, Luebke 2012, "Scalable Ambient Obscurance"; tau, hash and jitter: its authors' public code;
+//   Nielsen 2015, bachelor's thesis, Technical University of Denmark, listings 3.27 and 3.30.
 //
 // Every driver must take the very same taps, so nothing here rests on a driver's sine: directions come from tables made
 // on the CPU, and a pixel picks its spin by integer arithmetic, in units of 2^-32 turns that wrap around as the circle
-// does:
+// does (jitters are whole numbers of 2^-16, rounded down):
 //
-//     spin(x, y)   = 10 ((3 x) xor (y + x y)) radians, as the source
 //     turn of tap  = (i / N) tau  +  quantise(spin + jitter tau / N + frame 0.618...)
 //
 // quantise rounds down to 1/1024 turn. The last term is there where taps vary in time: `frame` counts from the last
@@ -25,6 +31,7 @@
 #include <glm/glm.hpp>
 
 #include "rasterizer/gl_objects.h"
+#include "rasterizer/method.h"
 #include "rasterizer/shader.h"
 
 namespace plumb {
@@ -55,7 +62,7 @@ public:
     void bind() const { tables_.bind(GL_UNIFORM_BUFFER, binding); }
 
     // What sample_spiral.glsl needs to be compiled.
-    static ShaderDefines defines(int samples, bool varies_in_time = false);
+    static ShaderDefines defines(int samples, TapPattern pattern, bool varies_in_time = false);
 
 private:
     static constexpr GLuint binding = 1;  // the view's uniforms have 0

@@ -92,7 +92,8 @@ Method small_method(const std::string& name) {
         method.radiosity.radius = 3.0f;
     }
     // Taps are some ten pixels away.
-    if (name.ends_with(".use_mip_chain")) method.ao.mip_offset = method.radiosity.mip_offset = 0;
+    if (name.ends_with(".use_mip_chain") || name.ends_with(".mip_points"))
+        method.ao.mip_offset = method.radiosity.mip_offset = 0;
     // Points are found again within some centimetres.
     if (name.starts_with("radiosity.carry_")) method.radiosity.carry_from = 0.005f, method.radiosity.carry_to = 0.02f;
     if (name == "direct.local_lights") method.direct.volume_threshold = 3.0f;

@@ -32,6 +32,36 @@ inline bool step_along(const Layers& layers, Pixel pixel, int dx, int dy, glm::d
     return true;
 }
 
+struct FaceNormal {
+    glm::dvec3 normal{0.0};  // none where it is 0
+    bool ambiguous = false;
+};
+
+inline FaceNormal face_normal(const Layers& layers, Pixel pixel) {
+    glm::dvec3 across, up;
+    if (!step_along(layers, pixel, 1, 0, across) || !step_along(layers, pixel, 0, 1, up)) return {};
+    const glm::dvec3 centre = point_at(layers, 0, pixel), normal = glm::normalize(glm::cross(across, up));
+    // Seen edge-on, a face's side is a matter of rounding.
+    return {glm::dot(normal, centre) > 0.0 ? -normal : normal,
+            std::abs(glm::dot(normal, glm::normalize(centre))) < 1e-3};
+}
+
+// The derivatives of the pixel's 2 by 2, to the right and upwards whichever corner the pixel is.
+inline FaceNormal derivative_normal(const Layers& layers, Pixel pixel) {
+    const Pixel left{pixel.x / 2 * 2, pixel.y}, right{left.x + 1, pixel.y}, below{pixel.x, pixel.y / 2 * 2},
+        above{pixel.x, below.y + 1};
+    for (const Pixel& p : {left, right, below, above}) {
+        if (!inside(layers, p) || depth_at(layers, 0, p) == 0.0) return {};
+    }
+    const glm::dvec3 normal = glm::cross(point_at(layers, 0, right) - point_at(layers, 0, left),
+                                         point_at(layers, 0, above) - point_at(layers, 0, below));
+    const double relative = glm::length(normal) / (6e-5 * std::pow(depth_at(layers, 0, pixel), 2.0));
+    // Differences of float points, which are good to some 1e-7 of the depth, where they are 1e-3 to 1e-2 of it.
+    const bool ambiguous = std::abs(relative - 1.0) < 1e-3;
+    if (relative > 1.0) return {glm::dvec3(0.0), ambiguous};
+    return {glm::normalize(normal), ambiguous};
+}
+
 // Of the disc that taps fall into; 0 where nothing is seen.
 inline double radius_in_pixels(const Layers& layers, const AmbientObscuranceSettings& settings,
                                const Quantities& quantities, Pixel pixel) {
@@ -52,13 +82,12 @@ inline Visibility visibility_by_taps(const Layers& layers, const AmbientObscuran
     const double radius_pixels = radius_in_pixels(layers, settings, quantities, pixel);
     const glm::dvec3 centre = point_at(layers, 0, pixel);
     glm::dvec3 normal = vector_at(layers, layers.normal[0], pixel);
-    if (settings.normals == ObscuranceNormals::face) {
-        glm::dvec3 across, up;
-        if (!step_along(layers, pixel, 1, 0, across) || !step_along(layers, pixel, 0, 1, up)) return {};
-        normal = glm::normalize(glm::cross(across, up));
-        if (glm::dot(normal, centre) > 0.0) normal = -normal;
-        // Seen edge-on, a face's side is a matter of rounding.
-        result.ambiguous |= std::abs(glm::dot(normal, glm::normalize(centre))) < 1e-3;
+    if (settings.normals != ObscuranceNormals::interpolated) {
+        const FaceNormal face =
+            settings.normals == ObscuranceNormals::face ? face_normal(layers, pixel) : derivative_normal(layers, pixel);
+        if (face.normal == glm::dvec3(0.0)) return {.ambiguous = face.ambiguous};
+        normal = face.normal;
+        result.ambiguous |= face.ambiguous;
     }
     double sum = 0.0;
     int hits = 0;
@@ -67,7 +96,7 @@ inline Visibility visibility_by_taps(const Layers& layers, const AmbientObscuran
         double largest = 0.0, both = 0.0;
         for (int layer = 0; layer < settings.layers; ++layer) {
             if (depth_at(layers, layer, tap.source) == 0.0) continue;
-            const glm::dvec3 v = point_at(layers, layer, tap.source) - centre;
+            const glm::dvec3 v = point_of_tap(layers, layer, tap, settings.mip_points) - centre;
             const double vv = glm::dot(v, v), vn = glm::dot(v, normal), relative_square = vv / (radius * radius);
             const double weight = falloff_of_square(quantities.ao_falloff, relative_square);
             // The hard falloff jumps at the radius.
@@ -142,7 +171,8 @@ inline SpiralRequest taps_of(const AmbientObscuranceSettings& settings, double r
     return {.pixel = pixel,
             .radius_pixels = radius_pixels,
             .samples = settings.samples,
-            .jitter = 32768,
+            .jitter = even_jitter(settings.pattern, settings.samples),
+            .form = settings.pattern,
             .use_mip_chain = settings.use_mip_chain,
             .mip_offset = settings.mip_offset,
             .minimum_distance = settings.estimator == AmbientObscuranceEstimator::g3d_demo ? 0.75 : 0.0,

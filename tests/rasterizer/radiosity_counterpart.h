@@ -13,12 +13,11 @@ struct Irradiance {
     bool ambiguous = false;
 };
 
-inline std::uint32_t radiosity_jitter(Pixel pixel, const SpiralPattern& pattern = {}) {
-    std::uint32_t h = static_cast<std::uint32_t>(pixel.x + pattern.shift.x) * 0x9E3779B1u ^
-                      static_cast<std::uint32_t>(pixel.y + pattern.shift.y) * 0x85EBCA77u;
-    h = (h ^ (h >> 15)) * 0xC2B2AE3Du;
-    h = (h ^ (h >> 13)) * 0x27D4EB2Fu;
-    return 6554u + static_cast<std::uint32_t>(static_cast<std::uint64_t>(h >> 16) * 52428u / 65536u);  // 0.1 to 0.9
+inline std::uint32_t radiosity_jitter(const RadiositySettings& settings, Pixel pixel,
+                                      const SpiralPattern& pattern = {}) {
+    if (settings.pattern == TapPattern::nielsen2015) return even_jitter(settings.pattern, settings.samples);
+    const std::uint64_t sixteen_bits = hash_of(pixel, pattern) >> 16;
+    return 6554u + static_cast<std::uint32_t>(sixteen_bits * 52428u / 65536u);  // 0.1 to 0.9
 }
 
 // Whose points receive, and how many of the layers that taps look at send light.
@@ -34,10 +33,11 @@ struct Received {
 };
 
 inline Received received_from(const Layers& layers, const RadiositySettings& settings, Falloff falloff, Pixel pixel,
-                              Pixel source, int layer, GatheringLayers of, bool& ambiguous) {
+                              const Tap& tap, int layer, GatheringLayers of, bool& ambiguous) {
+    const Pixel source = tap.source;
     if (depth_at(layers, layer, source) == 0.0) return {};
-    if (layer == of.receiver && source == pixel) return {};  // the shaded point itself has no direction
-    const glm::dvec3 v = point_at(layers, layer, source) - point_at(layers, of.receiver, pixel);
+    const glm::dvec3 v = point_of_tap(layers, layer, tap, settings.mip_points) - point_at(layers, of.receiver, pixel);
+    if (v == glm::dvec3(0.0)) return {};  // the shaded point itself has no direction
     const glm::dvec3 w = glm::normalize(v);
     const double cosine = glm::dot(w, vector_at(layers, layers.normal[of.receiver], pixel)),
                  relative_square = glm::dot(v, v) / (settings.radius * settings.radius);
@@ -70,7 +70,8 @@ inline Irradiance gathered_irradiance(const Layers& layers, const RadiositySetti
                     {.pixel = pixel,
                      .radius_pixels = settings.spread_pixels > 0 ? settings.spread_pixels : projected,
                      .samples = settings.samples,
-                     .jitter = radiosity_jitter(pixel, pattern),
+                     .jitter = radiosity_jitter(settings, pixel, pattern),
+                     .form = settings.pattern,
                      .use_mip_chain = settings.use_mip_chain,
                      .mip_offset = settings.mip_offset,
                      .minimum_mip_level = settings.minimum_mip_level,
@@ -84,8 +85,7 @@ inline Irradiance gathered_irradiance(const Layers& layers, const RadiositySetti
         glm::dvec3 best{0.0};
         int hits_of_tap = 0;
         for (int layer = 0; layer < settings.layers; ++layer) {
-            const Received one =
-                received_from(layers, settings, falloff, pixel, tap.source, layer, of, result.ambiguous);
+            const Received one = received_from(layers, settings, falloff, pixel, tap, layer, of, result.ambiguous);
             hits_of_tap += one.hit;
             if (adds) {
                 sum += one.light;

@@ -23,6 +23,9 @@ struct Case {
 const std::vector<Case> cases = {
     {"Nielsen's, as in the thesis",
      {.estimator = nielsen, .radius = 5.0f, .spread_pixels = 40, .test_tap_normal = false, .use_mip_chain = false}},
+    {"Nielsen's with the thesis' taps",
+     {.estimator = nielsen, .samples = 23, .pattern = TapPattern::nielsen2015, .test_tap_normal = false}},
+    {"Mara's with the thesis' taps", {.pattern = TapPattern::nielsen2015}},
     {"Nielsen's without a cut-off",
      {.estimator = nielsen, .radius = infinity, .spread_pixels = 40, .test_tap_normal = false}},
     {"Nielsen's of one layer", {.estimator = nielsen, .layers = 1, .test_tap_normal = false}},
@@ -85,7 +88,7 @@ glm::dvec4 limit_of(const counterpart::Layers& layers, const RadiositySettings& 
             bool hit = false;
             for (int layer = 0; layer < settings.layers; ++layer) {
                 const auto one =
-                    counterpart::received_from(layers, settings, Falloff::hard, pixel, tap, layer, {}, ignored);
+                    counterpart::received_from(layers, settings, Falloff::hard, pixel, {tap, tap}, layer, {}, ignored);
                 if (adds) {
                     sum += one.light, hits += one.hit;
                 } else {

@@ -40,6 +40,8 @@ const std::vector<Case> cases = {
     {"divided by the samples", {.normalisation = RadiosityNormalisation::samples}},
     {"coarse", {.mip_offset = 1, .minimum_mip_level = 2}},
     {"normals and radiance from chains", {.mip_offset = 1, .mip_normals_and_radiance = true}},
+    {"points at the taps", {.mip_offset = 1, .mip_points = MipTapPoint::sao2012}},
+    {"points at the taps, coarse", {.mip_offset = 1, .minimum_mip_level = 2, .mip_points = MipTapPoint::sao2012}},
     {"one tap", {.samples = 1}},
     {"small radius", {.samples = 99, .radius = 0.2f}},
 };

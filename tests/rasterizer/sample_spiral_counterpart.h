@@ -47,12 +47,16 @@ inline glm::dvec3 vector_at(const Layers& layers, const Image& image, Pixel p) {
     const auto values = image.pixel(p.x, layers.height() - 1 - p.y);
     return {values[0], values[1], values[2]};
 }
-inline glm::dvec3 point_at(const Layers& layers, int layer, Pixel p) {
-    if (!layers.position.empty()) return vector_at(layers, layers.position[layer], p);
+// One metre along -Z through the pixel's centre.
+inline glm::dvec3 ray_at(const Layers& layers, Pixel p) {
     const glm::dvec2 tan_half(layers.view.tan_half());
     const double u = 2.0 * (p.x + 0.5) / layers.width() - 1.0;
     const double v = 2.0 * (p.y + 0.5) / layers.height() - 1.0;
-    return depth_at(layers, layer, p) * glm::dvec3(u * tan_half.x, v * tan_half.y, -1.0);
+    return {u * tan_half.x, v * tan_half.y, -1.0};
+}
+inline glm::dvec3 point_at(const Layers& layers, int layer, Pixel p) {
+    if (!layers.position.empty()) return vector_at(layers, layers.position[layer], p);
+    return depth_at(layers, layer, p) * ray_at(layers, p);
 }
 
 // Rotated-grid subsampling, step by step: the pixel of level 0 that a texel of `level` shows.
@@ -66,6 +70,12 @@ struct Tap {
     Pixel source;  // the pixel of level 0 that is read
 };
 
+// A tap's point in a layer.
+inline glm::dvec3 point_of_tap(const Layers& layers, int layer, const Tap& tap, MipTapPoint points) {
+    return points == MipTapPoint::exact ? point_at(layers, layer, tap.source)
+                                        : depth_at(layers, layer, tap.source) * ray_at(layers, tap.pixel);
+}
+
 // Which pattern of taps: moved by a seed, and turned from frame to frame where taps vary in time.
 struct SpiralPattern {
     glm::ivec2 shift{0};
@@ -77,12 +87,27 @@ struct SpiralRequest {
     double radius_pixels;
     int samples;
     std::uint32_t jitter;  // in 2^-16
+    TapPattern form = TapPattern::sao2012;
     bool use_mip_chain;
     int mip_offset;
     int minimum_mip_level = 0;
     double minimum_distance = 0.0;
     SpiralPattern pattern = {};
 };
+
+// 32 bits that look random.
+inline std::uint32_t hash_of(Pixel pixel, const SpiralPattern& pattern = {}) {
+    std::uint32_t h = static_cast<std::uint32_t>(pixel.x + pattern.shift.x) * 0x9E3779B1u ^
+                      static_cast<std::uint32_t>(pixel.y + pattern.shift.y) * 0x85EBCA77u;
+    h = (h ^ (h >> 15)) * 0xC2B2AE3Du;
+    return (h ^ (h >> 13)) * 0x27D4EB2Fu;
+}
+
+// In 2^-16, of a pattern whose jitter is the same in all pixels: one half, or half of a turn's share.
+inline std::uint32_t even_jitter(TapPattern form, int samples) {
+    const int turns = form == TapPattern::nielsen2015 ? spiral_turns(samples) : 1;
+    return static_cast<std::uint32_t>(std::floor(0.5 / turns * 65536.0));
+}
 
 // The pixel of level 0 that a tap `distance` pixels away reads.
 inline Pixel source_of_tap(const Layers& layers, Pixel tap, double distance, const SpiralRequest& request) {
@@ -107,7 +132,9 @@ inline std::vector<Tap> spiral_taps(const Layers& layers, const SpiralRequest& r
     const auto jitter_unit = static_cast<std::uint32_t>(65536.0 * spiral_turns(request.samples) / request.samples);
     // The fraction of the golden ratio, (sqrt 5 - 1) / 2, of a turn for each frame.
     const auto frame_unit = static_cast<std::uint32_t>((std::sqrt(5.0) - 1.0) / 2.0 * 0x1p32);
-    const std::uint32_t turned = hash * spin_unit + request.jitter * jitter_unit + request.pattern.frame * frame_unit;
+    const std::uint32_t spun =
+        request.form == TapPattern::sao2012 ? hash * spin_unit : hash_of(request.pixel, request.pattern);
+    const std::uint32_t turned = spun + request.jitter * jitter_unit + request.pattern.frame * frame_unit;
     const double spin = static_cast<double>(turned >> 22) / 1024.0;
 
     std::vector<Tap> taps;

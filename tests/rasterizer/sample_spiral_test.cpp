@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "rasterizer/gl_error.h"
+#include "sample_spiral_counterpart.h"
 
 namespace plumb {
 namespace {
@@ -64,6 +65,38 @@ TEST(SampleSpiral, TapDirectionsAreUnitVectorsThatLeanNowhere) {
         // N directions 1 / N turn apart cancel; up to 1e-7 of rounding each.
         EXPECT_LT(glm::length(sum), 1e-7 * samples) << samples << " samples";
     }
+}
+
+// The hash that stands for the thesis' random numbers: directions that lean nowhere and that those of neighbours do not
+// tell. (That the shader's is the same is for the agreement of the passes to show.)
+TEST(SampleSpiral, RandomSpinsAreEvenAndIndependentOfTheirNeighbours) {
+    constexpr int side = 256;
+    const auto direction = [](int x, int y) {
+        const double turns = counterpart::hash_of({x, y}) * 0x1p-32;
+        return glm::dvec2(std::cos(2.0 * 3.14159265358979 * turns), std::sin(2.0 * 3.14159265358979 * turns));
+    };
+    glm::dvec2 mean(0.0), beside(0.0), above(0.0);
+    for (int y = 0; y < side; ++y) {
+        for (int x = 0; x < side; ++x) {
+            const auto turned_back = [&](const glm::dvec2& other) {
+                const glm::dvec2 own = direction(x, y);
+                return glm::dvec2(glm::dot(own, other), own.x * other.y - own.y * other.x);
+            };
+            mean += direction(x, y) / (1.0 * side * side);
+            beside += turned_back(direction(x + 1, y)) / (1.0 * side * side);
+            above += turned_back(direction(x, y + 1)) / (1.0 * side * side);
+        }
+    }
+    // n independent unit vectors have a mean of some 1 / sqrt(n); four times that in 65536.
+    for (const glm::dvec2& sum : {mean, beside, above}) EXPECT_LT(glm::length(sum), 4.0 / side);
+}
+
+TEST(SampleSpiral, TheThesisStartsItsSpiralAtHalfOverTau) {
+    for (const int samples : {11, 23, 37, 100}) {
+        EXPECT_NEAR(counterpart::even_jitter(TapPattern::nielsen2015, samples) / 65536.0, 0.5 / spiral_turns(samples),
+                    1.0 / 65536.0);
+    }
+    EXPECT_EQ(counterpart::even_jitter(TapPattern::sao2012, 23), 32768u);
 }
 
 TEST(SampleSpiral, TheFirstTurnsOfTheSpiralFollowTheFormula) {
