@@ -207,6 +207,9 @@ struct RadiositySettings {
 // How wide the specular lobe is taken to be (reflections.h): one ray for all of it; one ray that reads a blurred image
 // by the lobe's footprint; or rays spread over it.
 enum class ReflectionRoughness { mirror, mip, samples };
+// Where a ray hits a layer: up to `thickness` behind it, as a surface that thick would be; or, as Mara et al. 2016 have
+// it, no farther than that from it, on either side.
+enum class ReflectionHit { behind, mara2016 };
 // What is reflected where a ray finds nothing or leaves the view.
 enum class ReflectionFallback { none, environment, probe };
 
@@ -219,7 +222,8 @@ struct ReflectionSettings {
     float first_step = 1.0f;   // pixels to the first one
     int max_steps = 512;       // looks along a ray
     int refinement_steps = 4;  // halvings of the step in which a ray passed behind a surface
-    float thickness = 0.0f;    // metres that surfaces are taken to be thick; 0: the G-buffer's minimum separation
+    ReflectionHit hit = ReflectionHit::behind;
+    float thickness = 0.0f;  // metres that surfaces are taken to be thick; 0: the G-buffer's minimum separation
     float max_distance = std::numeric_limits<float>::infinity();  // metres
     float bias = 0.005f;          // metres that a hit must rise above the reflecting point's tangent plane
     bool test_hit_normal = true;  // what is hit must face the ray

@@ -103,6 +103,7 @@ ShaderDefines shader_defines(const PassResources& resources, bool lamps, bool fa
         {"FIRST_STEP", shader_literal(settings.first_step)},
         {"MAX_STEPS", std::to_string(settings.max_steps)},
         {"REFINEMENT_STEPS", std::to_string(settings.refinement_steps)},
+        {"HIT_IN_FRONT", settings.hit == ReflectionHit::mara2016 ? "1" : "0"},
         {"BIAS", shader_literal(settings.bias)},
         {"TEST_HIT_NORMAL", settings.test_hit_normal ? "1" : "0"},
         {"MAX_DISTANCE", shader_literal(longest)},

@@ -4,14 +4,16 @@
 // reciprocal of depth is linear. It ends where it leaves the view's frustum or is `max_distance` long. It is looked at
 // `first_step` pixels (of the axis that it covers more pixels of) from X and then every `step` pixels, `max_steps`
 // times at most. Between two looks its depth covers an interval; it passes behind a layer where that interval meets [z,
-// z + thickness], z the layer's depth in the pixel of the second look. The stretch is then halved `refinement_steps`
-// times by the same question. What is found, the point Y in a pixel of the layer, is hit if it rises more than `bias`
+// z + thickness], z the layer's depth in the pixel of the second look; or, with hit = mara2016, comes near it where the
+// interval meets [z - thickness, z + thickness]. The stretch is then halved `refinement_steps` times by the same
+// question. What is found, the point Y in a pixel of the layer, is hit if it rises more than `bias`
 // above X's tangent plane (the surface does not reflect itself) and, with test_hit_normal, faces the ray: what is seen
 // of a surface from the front says nothing about its back. Else the ray goes on. Where both layers are passed in one
 // step the first wins.
 //   Sources: Mara et al. 2016, "Deep G-Buffers for Stable Global Illumination Approximation": a ray hits where it comes
-//   within the separation of either layer, else the environment answers; McGuire, Mara 2014, "Efficient GPU
-//   Screen-Space Ray Tracing": lines on the screen, in pixels, intervals of depth.
+//   within the separation of either layer, before or behind it (which thickens silhouettes and lets rays end before
+//   they reach what they would hit), else the environment answers; McGuire, Mara 2014, "Efficient GPU Screen-Space Ray
+//   Tracing": lines on the screen, in pixels, intervals of depth.
 //
 // With o the direction to the viewer, f0, f90 and alpha those of the material (scenes/ggx.h), L(w) what is found along
 // w, and A, B the split sum's tables (scenes/specular_albedo.h):
@@ -33,8 +35,8 @@
 //     environment  the scene's environment, prefiltered by roughness (radiance_maps.h)
 //     probe        a probe's view, also prefiltered; without parallax
 // The highlights of lamps and suns come in as their own plane (lamp_highlights_pass.h).
-// Quantities::reflection_radius and its falloff apply as they do to the truth: what is farther away does not count. With
-// a finite radius a fallback would not count either: that is an error.
+// Quantities::reflection_radius and its falloff apply as they do to the truth: what is farther away does not count.
+// With a finite radius a fallback would not count either: that is an error.
 //   Good for: what the view shows, reflected at grazing angles. Bad for: what only a mirror shows: the backs of things,
 //   what is outside the view or hidden behind more than the layers hold; thin things thinner than a step; the path
 //   tracer's `reflection` also holds what passes straight through transparent sheets, which this does not.

@@ -1,7 +1,7 @@
 // A ray through the layers of the G-buffer; reflections.h says how it is traced.
 //
-// Defines: LAYERS (1, 2), STEP and FIRST_STEP (pixels), MAX_STEPS, REFINEMENT_STEPS, BIAS (metres), TEST_HIT_NORMAL (0,
-// 1), MAX_DISTANCE (metres).
+// Defines: LAYERS (1, 2), STEP and FIRST_STEP (pixels), MAX_STEPS, REFINEMENT_STEPS, HIT_IN_FRONT (0, 1: within the
+// thickness before a surface, too), BIAS (metres), TEST_HIT_NORMAL (0, 1), MAX_DISTANCE (metres).
 #include "depth_mip_chain.glsl"
 #include "normal_encoding.glsl"
 
@@ -60,13 +60,18 @@ ivec2 pixel_at(ScreenLine line, float along) {
 }
 float depth_at(ScreenLine line, float along) { return 1.0 / (line.reciprocal_start + along * line.reciprocal_slope); }
 
-// Whether the ray, between two depths, is inside what is seen in `pixel`.
-bool passes_behind(float one_depth, float other_depth, ivec2 pixel, int layer) {
+// Whether the ray, between two depths, is inside what is seen in `pixel`, or so near to it that it counts.
+bool meets(float one_depth, float other_depth, ivec2 pixel, int layer) {
     float surface = texelFetch(depth, ivec3(pixel, layer), 0).r;
-    return max(one_depth, other_depth) >= surface && min(one_depth, other_depth) <= surface + thickness;
+#if HIT_IN_FRONT
+    float front = surface - thickness;
+#else
+    float front = surface;
+#endif
+    return max(one_depth, other_depth) >= front && min(one_depth, other_depth) <= surface + thickness;
 }
 
-// Narrows the stretch before `along` in which the ray passed behind the layer; tells whether it hit it.
+// Narrows the stretch before `along` in which the ray met the layer; tells whether it hit it.
 bool refine(ScreenLine line, float before, float along, int layer, vec3 origin, vec3 direction, vec3 camera_normal,
             out RayHit hit) {
     float depth_before = depth_at(line, before);
@@ -76,7 +81,7 @@ bool refine(ScreenLine line, float before, float along, int layer, vec3 origin, 
         ivec2 at = pixel_at(line, middle);
         // In its own pixel the ray starts at the very depth of the surface: rounding would answer.
         bool own = layer == 0 && at == ivec2(line.start);
-        if (!own && passes_behind(depth_before, depth_middle, at, layer)) {
+        if (!own && meets(depth_before, depth_middle, at, layer)) {
             along = middle;
         } else {
             before = middle;
@@ -109,7 +114,7 @@ RayHit trace(ivec2 pixel, vec3 origin, vec3 camera_normal, vec3 direction) {
         float depth_now = depth_at(line, along);
         ivec2 at = pixel_at(line, along);
         for (int layer = 0; layer < LAYERS; ++layer) {
-            if (passes_behind(depth_before, depth_now, at, layer) &&
+            if (meets(depth_before, depth_now, at, layer) &&
                 refine(line, before, along, layer, origin, direction, camera_normal, hit)) {
                 return hit;
             }

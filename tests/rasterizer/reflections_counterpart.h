@@ -186,14 +186,15 @@ private:
             return Pixel{std::clamp(static_cast<int>(std::floor(p.x + 1e-9)), 0, layers_.width() - 1),
                          std::clamp(static_cast<int>(std::floor(p.y + 1e-9)), 0, layers_.height() - 1)};
         };
-        const auto passes_behind = [&](double a, double b, Pixel p, int layer) {
+        const auto meets = [&](double a, double b, Pixel p, int layer) {
             const double surface = depth_at(layers_, layer, p);
             if (surface == 0.0) return false;
             const double low = std::min(a, b), high = std::max(a, b);
             const double doubt = 2e-5 * surface;
-            result.ambiguous |= std::abs(high - surface) < doubt && low <= surface + settings.thickness + doubt;
-            result.ambiguous |= std::abs(low - surface - settings.thickness) < doubt && high >= surface - doubt;
-            return high >= surface && low <= surface + settings.thickness;
+            const double front = settings.hit == ReflectionHit::mara2016 ? surface - settings.thickness : surface;
+            result.ambiguous |= std::abs(high - front) < doubt && low <= surface + settings.thickness + doubt;
+            result.ambiguous |= std::abs(low - surface - settings.thickness) < doubt && high >= front - doubt;
+            return high >= front && low <= surface + settings.thickness;
         };
         double before = 0.0;
         for (int i = 0; i < settings.max_steps; ++i) {
@@ -201,13 +202,13 @@ private:
             result.ambiguous |= std::abs(along - length) < 1e-3;
             if (along > length) break;
             for (int layer = 0; layer < settings.layers; ++layer) {
-                if (!passes_behind(depth(before), depth(along), pixel_at(along), layer)) continue;
+                if (!meets(depth(before), depth(along), pixel_at(along), layer)) continue;
                 double low = before, high = along;
                 for (int k = 0; k < settings.refinement_steps; ++k) {
                     const double middle = 0.5 * (low + high);
                     const Pixel at = pixel_at(middle);
                     const bool own = layer == 0 && at == pixel;
-                    if (!own && passes_behind(depth(low), depth(middle), at, layer)) {
+                    if (!own && meets(depth(low), depth(middle), at, layer)) {
                         high = middle;
                     } else {
                         low = middle;

@@ -111,6 +111,9 @@ const std::vector<Case> cases = {
     {"long steps", {.roughness = mirror, .step = 3.75f, .first_step = 1.25f, .refinement_steps = 6}},
     {"few steps", {.roughness = mirror, .max_steps = 4, .fallback = ReflectionFallback::environment}},
     {"thick", {.roughness = mirror, .thickness = 0.7f}},
+    {"the paper's, before and behind", {.roughness = mirror, .hit = ReflectionHit::mara2016}},
+    {"the paper's, thick, one layer",
+     {.roughness = mirror, .layers = 1, .step = 1.0f, .hit = ReflectionHit::mara2016, .thickness = 0.4f}},
     {"short rays", {.roughness = mirror, .max_distance = 0.8f, .fallback = ReflectionFallback::environment}},
     {"backs are hit", {.roughness = mirror, .test_hit_normal = false}},
     {"small bias, no fade", {.roughness = mirror, .bias = 0.001f, .border_fade = 0}},
@@ -306,6 +309,27 @@ TEST_P(ReflectionsTest, TwoLayersReflectWhatTheFirstOneHides) {
     const double one = brightness(1), two = brightness(2);
     EXPECT_GT(one, 100.0) << "pixels that mirror what is in plain view";
     EXPECT_GT(two, 1.3 * one);
+}
+
+// Rays that pass before a board by less than the separation end on it by the paper's rule, and only by that.
+TEST_P(ReflectionsTest, ThePapersRuleAlsoHitsWhatARayPassesBefore) {
+    const View view = slanted_view(72, 48);
+    const counterpart::Layers layers = room(view);
+    const counterpart::Gloss gloss = even_gloss(view, glm::vec3(1.0f), 1.0f, 0.0f);
+    const auto hits = [&](ReflectionHit hit) {
+        const ReflectionSettings settings{.roughness = mirror, .hit = hit};
+        const counterpart::ReflectionTracer tracer(layers, gloss, request_of(settings));
+        std::vector<int> found;
+        for (int y = 0; y < view.height(); ++y) {
+            for (int x = 0; x < view.width(); ++x) found.push_back(tracer.reflect({x, y}).hits);
+        }
+        return found;
+    };
+    const std::vector<int> behind = hits(ReflectionHit::behind), either = hits(ReflectionHit::mara2016);
+    int gained = 0, lost = 0;
+    for (std::size_t i = 0; i < behind.size(); ++i) gained += either[i] > behind[i], lost += either[i] < behind[i];
+    EXPECT_GT(gained, 10);
+    EXPECT_LT(lost, gained / 2) << "a wider range of depths ends the halving earlier, at times on what cannot be hit";
 }
 
 TEST_P(ReflectionsTest, HitsFadeTowardsTheBorder) {
