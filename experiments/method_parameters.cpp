@@ -86,6 +86,7 @@ std::vector<MethodParameter> method_parameters(Method& m) {
         {"direct.emitters", &m.direct.emitters},
         {"direct.local_lights", choice(m.direct.local_lights, {"fullscreen", "volume", "volume_stencil"})},
         {"direct.volume_threshold", &m.direct.volume_threshold, 1e-9, 1e6},
+        {"direct.volume_radius", choice(m.direct.volume_radius, {"attenuation", "ogldev_code"})},
         {"direct.volume_faces", choice(m.direct.volume_faces, {"front", "back", "both"})},
         {"direct.environment", choice(m.direct.environment, {"harmonics", "cube"})},
         {"direct.shadow.lamps", &m.direct.shadow.lamps},

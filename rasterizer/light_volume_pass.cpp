@@ -39,7 +39,8 @@ LightVolumePass::LightVolumePass(const PassResources& resources, int layer, bool
       vertex_array_(context_),
       depth_(resources.planes.get("depth")),
       normal_(resources.planes.get("normal")) {
-    upload(LightVolumes(resources.scene, resources.method.direct.volume_threshold), resources.programs,
+    const DirectSettings& direct = resources.method.direct;
+    upload(LightVolumes(resources.scene, direct.volume_threshold, direct.volume_radius), resources.programs,
            lights_.shadow_defines(), counts_fragments);
     if (uses_stencil_) {
         stencil_program_ = &resources.programs.get({"light_volume.vert", "light_volume_stencil.frag"});

@@ -36,11 +36,14 @@ glm::mat4 scaled_cone(const SpotLight& light, float radius) {
 
 }  // namespace
 
-float light_radius(const Attenuation& attenuation, float strongest, float threshold) {
+float light_radius(const Attenuation& attenuation, float strongest, float threshold, VolumeRadius defined_by) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
+    const bool ogldev = defined_by == VolumeRadius::ogldev_code;
+    if (ogldev && attenuation.quadratic == 0.0f) return static_cast<float>(infinity);
     const double a = attenuation.quadratic, b = attenuation.linear;
     // a d^2 + b d + c = 0
-    const double c = static_cast<double>(attenuation.constant) - static_cast<double>(strongest) / threshold;
+    const double constant = ogldev ? attenuation.quadratic : attenuation.constant;
+    const double c = constant - static_cast<double>(strongest) / threshold;
     if (c >= 0.0) return 0.0f;
     if (a > 0.0) {
         // The form without cancellation where b^2 outweighs the rest.
@@ -49,10 +52,10 @@ float light_radius(const Attenuation& attenuation, float strongest, float thresh
     return static_cast<float>(b > 0.0 ? -c / b : infinity);
 }
 
-LightVolumes::LightVolumes(const Scene& scene, float threshold) {
+LightVolumes::LightVolumes(const Scene& scene, float threshold, VolumeRadius defined_by) {
     const Bounds bounds = bounds_over_time(scene);
     const auto radius_of = [&](const auto& light) {
-        return std::min(light_radius(light.attenuation, strongest_channel(light.intensity), threshold),
+        return std::min(light_radius(light.attenuation, strongest_channel(light.intensity), threshold, defined_by),
                         reach(bounds, light.position));
     };
     for (std::size_t i = 0; i < scene.point_lights.size(); ++i) {

@@ -5,10 +5,13 @@
 //
 // solved for d. The threshold is an irradiance (W / m^2, on a surface that faces the light). What is left out is less
 // than albedo / pi * threshold of radiance per light; where n lights are left out, less than n times that.
-//   Source: Meiri, "OGLdev", tutorial 36, with 1/256 as the threshold: half a step of an 8-bit picture. Its code solves
-//   with the quadratic term in the place of the constant one; here the constant one stands there. A light of pure
+//   Source: Meiri, "OGLdev", tutorial 36, with 1/256 as the threshold: half a step of an 8-bit picture. A light of pure
 //   inverse square, which that attenuation has no name for, is the case constant = linear = 0.
-// A light that never falls below the threshold reaches to the scene's farthest corner, beyond which nothing is lit.
+// The tutorial's code solves with the quadratic term in the place of the constant one, which makes volumes larger where
+// the constant is the larger of the two, and smaller where it is the smaller: then more light is lost than the
+// threshold allows. So does VolumeRadius::ogldev_code; without a quadratic term, by which that code divides, the radius
+// is infinite. A light that never falls below the threshold reaches to the scene's farthest corner, beyond which
+// nothing is lit.
 //
 // The meshes contain the true sphere and cone wholly, so that corners between their facets lose no light.
 #pragma once
@@ -25,7 +28,8 @@ namespace plumb {
 
 // The distance at which `strongest` W / sr fall below `threshold` W / m^2; infinity where they never do, 0 where they
 // are below it everywhere.
-float light_radius(const Attenuation& attenuation, float strongest, float threshold);
+float light_radius(const Attenuation& attenuation, float strongest, float threshold,
+                   VolumeRadius defined_by = VolumeRadius::attenuation);
 
 // One light's volume. `light` is its index among the scene's point or spot lights.
 struct LightVolume {
@@ -34,7 +38,7 @@ struct LightVolume {
 };
 
 struct LightVolumes {
-    LightVolumes(const Scene& scene, float threshold);
+    LightVolumes(const Scene& scene, float threshold, VolumeRadius defined_by = VolumeRadius::attenuation);
 
     std::vector<LightVolume> point_spheres;
     std::vector<LightVolume> spot_spheres;  // cones wider than a flat shadow map can be

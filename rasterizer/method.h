@@ -58,6 +58,9 @@ struct ShadowSettings {
 
 // How point and spot lights are shaded (light_volume_pass.h): every light at every pixel, or each within its volume.
 enum class LocalLights { fullscreen, volume, volume_stencil };
+// Which distance a volume's radius is: where the light falls to the threshold, or what OGLdev's code of tutorial 36
+// comes to, which has the attenuation's quadratic term in the place of its constant one (light_volumes.h).
+enum class VolumeRadius { attenuation, ogldev_code };
 enum class VolumeFaces { front, back, both };  // which side of a volume is drawn where there is no stencil
 // What gives the irradiance of the environment: spherical harmonics of order 2, or a cube (radiance_maps.h).
 enum class EnvironmentIrradiance { harmonics, cube };
@@ -67,6 +70,7 @@ struct DirectSettings {
     bool emitters = true;  // emissive surfaces light others here; without, only through radiosity.emitters_shine
     LocalLights local_lights = LocalLights::fullscreen;
     float volume_threshold = 1.0f / 256.0f;  // W / m^2 below which a light ends
+    VolumeRadius volume_radius = VolumeRadius::attenuation;
     VolumeFaces volume_faces = VolumeFaces::back;
     EnvironmentIrradiance environment = EnvironmentIrradiance::harmonics;
     ShadowSettings shadow;

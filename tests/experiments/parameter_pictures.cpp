@@ -96,7 +96,7 @@ Method small_method(const std::string& name) {
         method.ao.mip_offset = method.radiosity.mip_offset = 0;
     // Points are found again within some centimetres.
     if (name.starts_with("radiosity.carry_")) method.radiosity.carry_from = 0.005f, method.radiosity.carry_to = 0.02f;
-    if (name == "direct.local_lights") method.direct.volume_threshold = 3.0f;
+    if (name == "direct.local_lights" || name == "direct.volume_radius") method.direct.volume_threshold = 3.0f;
     // Highlights of lamps are brighter than what there is else to be seen.
     if (name.starts_with("probe.") || name.starts_with("environment.")) method.reflections.lamps = false;
     return method;

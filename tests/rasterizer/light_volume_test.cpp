@@ -34,6 +34,26 @@ TEST(LightVolumes, TheRadiusIsWhereTheLightFallsBelowTheThreshold) {
     EXPECT_EQ(light_radius({1.0f, 0.0f, 1.0f}, 0.5f, 1.0f), 0.0f) << "below the threshold from the start";
 }
 
+// The tutorial's code, evaluated by hand: (-l + sqrt(l^2 - 4 q (q - I / t))) / (2 q).
+TEST(LightVolumes, TheTutorialsCodeTakesTheQuadraticTermForTheConstantOne) {
+    const auto by_hand = [](double linear, double quadratic, double relative) {
+        return (-linear + std::sqrt(linear * linear - 4.0 * quadratic * (quadratic - relative))) / (2.0 * quadratic);
+    };
+    const auto by_code = [](const Attenuation& attenuation, float strongest, float threshold) {
+        return light_radius(attenuation, strongest, threshold, VolumeRadius::ogldev_code);
+    };
+    EXPECT_NEAR(by_code({1.0f, 0.7f, 1.8f}, 40.0f, 0.1f), by_hand(0.7, 1.8, 400.0), 1e-4);
+    EXPECT_NEAR(by_code({0.0f, 0.0f, 0.3f}, 1.0f, 1.0f / 256.0f), by_hand(0.0, 0.3, 256.0), 1e-4);
+    // Where the constant term is the smaller one the light ends before it has fallen to the threshold, and is lost.
+    const Attenuation inverse_square{0.0f, 0.0f, 1.0f};
+    const float radius = by_code(inverse_square, 4.0f, 1.0f);
+    EXPECT_FLOAT_EQ(radius, std::sqrt(3.0f));
+    EXPECT_GT(4.0f * inverse_square.evaluate(radius), 1.3f);
+    EXPECT_GT(by_code({9.0f, 0.0f, 1.0f}, 10.0f, 1.0f), light_radius({9.0f, 0.0f, 1.0f}, 10.0f, 1.0f));
+    EXPECT_EQ(by_code({1.0f, 0.0f, 2.0f}, 1.5f, 1.0f), 0.0f) << "its root of a negative number";
+    EXPECT_TRUE(std::isinf(by_code({1.0f, 0.5f, 0.0f}, 4.0f, 1.0f))) << "its division by zero";
+}
+
 TEST(LightVolumes, EndlessLightReachesTheFarthestCornerOfTheScene) {
     Scene scene = make_corner();
     scene.point_lights.push_back({"lamp", {-2.0f, 0.0f, -2.0f}, {9, 9, 9}, {1.0f, 0.0f, 0.0f}});
@@ -190,6 +210,26 @@ TEST_P(LightVolumeTest, AVanishingThresholdGivesTheFullScreenPicture) {
             }
         }
     }
+}
+
+// sqrt(5 / 1 - 1) is 2 metres, and so is sqrt(5 / 1.25): the pictures of the two radii are the same bit for bit.
+TEST_P(LightVolumeTest, TheTutorialsRadiusEndsLightWhereAHigherThresholdWould) {
+    Scene scene = make_layered_scene();
+    scene.point_lights.push_back({"lamp", {0.4f, 1.9f, 0.9f}, {5.0f, 3.0f, 1.0f}});
+    const auto light = [&](float threshold, VolumeRadius defined_by) {
+        Method method = lamp_method(LocalLights::volume_stencil, threshold);
+        method.direct.volume_radius = defined_by;
+        return render(context(), scene, corner_view(), {"direct"}, method).plane("direct");
+    };
+    const Image by_code = light(1.0f, VolumeRadius::ogldev_code), higher = light(1.25f, VolumeRadius::attenuation),
+                as_told = light(1.0f, VolumeRadius::attenuation);
+    EXPECT_TRUE(std::ranges::equal(by_code.values(), higher.values()));
+    int lost = 0;
+    for (std::size_t i = 0; i < by_code.values().size(); ++i) {
+        ASSERT_LE(by_code.values()[i], as_told.values()[i]);
+        lost += by_code.values()[i] < as_told.values()[i];
+    }
+    EXPECT_GT(lost, 100);
 }
 
 // With shadows: the same lookups from another shader.
