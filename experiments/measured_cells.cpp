@@ -105,6 +105,7 @@ std::vector<Cell> cells_of(const RunResults& results) {
         if (!row.curve.empty()) cell.parameter = row.curve_value;
         if (row.path_tracer_samples > 0) cell.curve = "path tracer", cell.parameter = row.path_tracer_samples;
         if (row.measured) add_errors(row, cell);
+        if (row.lag) cell.set("lag", row.lag->value);
         if (row.oracle_layers < 0 && row.timing.repetitions > 0) {
             cell.set("ms", row.timing.median);
             for (const PassTiming& pass : row.timing.passes)

@@ -7,6 +7,7 @@
 //   bias, psnr, ssim...  the names of metrics/comparison.h
 //   rmse in REGION       the same over some of the pixels (metrics/regions.h); along paths also flicker in REGION
 //   flicker, warping, truth warping, temporal variance     of camera paths
+//   lag                  in frames, of camera paths that stand still while something moves (metrics/path_lag.h)
 //   ms, ms of PASS       median time of the frame and of one pass
 //   bytes per pixel      of the G-buffer
 //   wrong, wrong inside, missing, violations               of second layers (generation.h), as fractions of the pixels

@@ -16,6 +16,7 @@
 #include "experiments/settling.h"
 #include "metrics/comparison.h"
 #include "metrics/fidelity_series.h"
+#include "metrics/path_lag.h"
 #include "metrics/path_stability.h"
 #include "metrics/plane_series.h"
 #include "rasterizer/pipeline.h"
@@ -50,6 +51,14 @@ Frame without_derived_planes(const Frame& truth) {
     return frame;
 }
 
+// Thrice as long as it takes to settle: in the last third less than a ten-thousandth is still to come.
+int held_frames(const Method& method) { return 3 * frames_to_settle(method); }
+
+void add_to(Image& sum, const Image& image, float weight) {
+    if (sum.empty()) sum = Image(image.width(), image.height(), image.channels());
+    for (std::size_t i = 0; i < sum.values().size(); ++i) sum.values()[i] += weight * image.values()[i];
+}
+
 }  // namespace
 
 // What one method makes of one plane, frame after frame.
@@ -59,7 +68,8 @@ struct PathRun::Series {
           method(std::move(of_method)),
           oracle_layers(of_oracle_layers),
           errors(plane, SeriesOf::frames, series_settings(experiment)),
-          stability(plane, stability_settings(experiment)) {}
+          stability(plane, stability_settings(experiment)),
+          lag(plane) {}
 
     std::string plane, method;
     int oracle_layers;  // as ResultRow has it
@@ -68,6 +78,7 @@ struct PathRun::Series {
     PlaneSeries errors;
     FidelitySeries fidelity;
     PathStability stability;
+    PathLag lag;
     std::vector<FrameMeasure> frames;
     std::vector<Image> images;
     Timing timing;
@@ -85,6 +96,9 @@ PathRun::PathRun(const Experiment& experiment, const ExperimentScene& entry, con
       scene_moves_(std::ranges::any_of(scene.instances, &Instance::moves)),
       truths_(experiment.planes.size()) {
     scene.path(path.path);  // throws for a name that is not there
+    tells_lag_ = scene_moves_;
+    for (int frame = 1; frame < path.frames; ++frame)
+        tells_lag_ = tells_lag_ && Moment{at(frame).view} == Moment{at(0).view};
 }
 
 PathRun::~PathRun() = default;
@@ -104,7 +118,8 @@ std::string PathRun::cell_key(int frame) const {
 
 std::vector<std::vector<PlaneImage>> PathRun::load_cells() const {
     std::vector<std::vector<PlaneImage>> cells;
-    for (int frame = 0; frame < path_.frames; ++frame) {
+    const int count = path_.frames + (tells_lag_ ? 1 : 0);  // what was held after the last frame included
+    for (int frame = 0; frame < count; ++frame) {
         // Histories cannot be taken up in the middle: one frame that is missing, and all are rendered again.
         std::optional<std::vector<PlaneImage>> cell = control_.cells.load(cell_key(frame));
         if (!cell) return {};
@@ -117,10 +132,8 @@ void PathRun::make_pipelines(RunResults& results) {
     for (const std::unique_ptr<Series>& series : series_) {
         if (series->oracle_layers >= 0) continue;
         const Quantities quantities = quantities_of(experiment_, entry_, series->plane);
-        const Method method =
-            method_in_scene(*find_method(experiment_.methods, series->method), entry_, experiment_.file.string());
         try {
-            series->pipeline = std::make_unique<Pipeline>(control_.context, scene_, method, quantities,
+            series->pipeline = std::make_unique<Pipeline>(control_.context, scene_, method_of(*series), quantities,
                                                           experiment_.width, experiment_.height);
             series->gbuffer_bytes_per_pixel = static_cast<int>(series->pipeline->gbuffer_bytes_per_pixel());
         } catch (const std::exception& error) {
@@ -131,6 +144,10 @@ void PathRun::make_pipelines(RunResults& results) {
     }
     std::erase_if(series_,
                   [](const std::unique_ptr<Series>& series) { return series->oracle_layers < 0 && !series->pipeline; });
+}
+
+Method PathRun::method_of(const Series& series) const {
+    return method_in_scene(*find_method(experiment_.methods, series.method), entry_, experiment_.file.string());
 }
 
 TimeSpan PathRun::span_to(int frame) const {
@@ -182,10 +199,9 @@ std::vector<PlaneImage> PathRun::render_methods(int frame, const Frame& truth, R
         try {
             if (frame == 0) {
                 // The path begins with a history that has settled, as in the middle of a sequence.
-                const Method method = method_in_scene(*find_method(experiment_.methods, series->method), entry_,
-                                                      experiment_.file.string());
                 const FrameRequest still{.now = at(0), .truth = &truth};
-                for (int i = 1; i < frames_to_settle(method); ++i) series->pipeline->time_passes(still);
+                const int settling = frames_to_settle(method_of(*series));
+                for (int i = 1; i < settling; ++i) series->pipeline->time_passes(still);
             }
             RasterResult raster = series->pipeline->render(request_for(frame, truth));
             PlaneImage& image = images.emplace_back(
@@ -251,6 +267,47 @@ void PathRun::keep_first_cell(std::vector<PlaneImage> images) const {
     control_.cells.save(cell_key(0), images);
 }
 
+std::vector<PlaneImage> PathRun::render_held(const Frame& truth, RunResults& results) {
+    std::vector<PlaneImage> images;
+    const Moment last = at(path_.frames - 1);
+    const FrameRequest request{.now = last, .previous = last, .next = last, .truth = &truth};
+    for (const std::unique_ptr<Series>& series : series_) {
+        if (!series->pipeline) continue;
+        try {
+            const int settling = frames_to_settle(method_of(*series)), frames = held_frames(method_of(*series));
+            Image sum, settled;
+            for (int i = 0; i < frames; ++i) {
+                if (stopped()) return {};
+                const RasterResult raster = series->pipeline->render(request);
+                const Image& image = raster.frame.plane(series->plane);
+                add_to(sum, image, 1.0f);
+                if (i >= frames - settling) add_to(settled, image, 1.0f / static_cast<float>(settling));
+            }
+            images.push_back({path_.path, series->plane, series->method, std::move(sum)});
+            images.push_back({path_.path, series->plane, series->method, std::move(settled)});
+        } catch (const std::exception& error) {
+            results.failures.push_back({fmt::format("{} / {} / {} / {}, held after the last frame", entry_.scene,
+                                                    path_.path, series->plane, series->method),
+                                        error.what()});
+            series->pipeline.reset();
+        }
+    }
+    return images;
+}
+
+void PathRun::add_held(const Frame& truth, RunResults& results) {
+    const std::string key = cell_key(path_.frames);  // one behind the last
+    std::optional<std::vector<PlaneImage>> held = control_.cells.load(key);
+    if (!held) {
+        held = render_held(truth, results);
+        if (held->size() == 2 * experiment_.planes.size() * experiment_.methods.size()) control_.cells.save(key, *held);
+    }
+    for (std::size_t i = 0; i + 1 < held->size(); i += 2) {
+        Series& series = series_of((*held)[i]);
+        series.lag.hold((*held)[i].image, (*held)[i + 1].image, held_frames(method_of(series)));
+    }
+}
+
 std::vector<PlaneImage> PathRun::render_oracle(int frame, const Frame& truth, RunResults& results) {
     const auto render = [&](const ReferenceSettings& settings, const std::string& name) {
         return render_reference(frame, settings, name, {1.0, 1.0}, results);
@@ -258,11 +315,14 @@ std::vector<PlaneImage> PathRun::render_oracle(int frame, const Frame& truth, Ru
     return oracle_images(experiment_, entry_, path_.path, at(frame).view, truth_settings(), truth, render);
 }
 
-void PathRun::add(const PlaneImage& image, int frame, const Frame& truth, const std::vector<Region>& regions) {
-    const auto found = std::ranges::find_if(series_, [&](const std::unique_ptr<Series>& series) {
+PathRun::Series& PathRun::series_of(const PlaneImage& image) {
+    return **std::ranges::find_if(series_, [&](const std::unique_ptr<Series>& series) {
         return series->plane == image.plane && series->method == image.method;
     });
-    Series& series = **found;
+}
+
+void PathRun::add(const PlaneImage& image, int frame, const Frame& truth, const std::vector<Region>& regions) {
+    Series& series = series_of(image);
     const Frame test = frame_of(image);
     FrameMeasure measure{path_.start + frame / path_.frames_per_second, no_value, no_value};
     const PlaneComparison whole = std::move(series.errors.add(test, truth, regions).front());
@@ -270,6 +330,7 @@ void PathRun::add(const PlaneImage& image, int frame, const Frame& truth, const 
     if (whole.referenced) measure.rmse = std::sqrt(std::max(0.0, whole.referenced->mse));
     if (const std::optional<Flicker> flicker = series.stability.add(test, truth, nullptr, regions))
         measure.flicker = flicker->rms;
+    if (tells_lag_ && series.oracle_layers < 0) series.lag.add(test, truth);
     series.frames.push_back(measure);
     if (series.oracle_layers < 0) series.images.push_back(image.image);  // pictures show methods
     if (frame == 0) series.timing = image.timing;                        // of all frames, where a cell has it
@@ -309,6 +370,8 @@ void PathRun::run(RunResults& results) {
         for (const PlaneImage& image : oracle) add(image, frame, truth, regions);
         for (std::size_t plane = 0; plane < truths_.size(); ++plane)
             truths_[plane].push_back(truth.plane(experiment_.planes[plane]));
+        if (tells_lag_ && frame + 1 == path_.frames) add_held(truth, results);
+        if (stopped()) return;
     }
     // What failed on the way is on record, and has no row.
     std::erase_if(series_, [&](const std::unique_ptr<Series>& series) {
@@ -342,6 +405,7 @@ void PathRun::write_rows(RunResults& results) {
         row.frames = series->frames;
         row.stability = series->stability.result();
         row.timing = series->timing;
+        if (const Estimate lag = series->lag.result(); std::isfinite(lag.value)) row.lag = lag;
         results.rows.push_back(std::move(row));
     }
 }

@@ -1,6 +1,7 @@
 // One camera path of an experiment's scene: every frame rendered by the path tracer and, in turn, by every method as
-// it would in motion, with its history, and by the oracle; the error over all frames, and how steady it is. Then the
-// methods play the path once more, without the path tracer and without a picture, for their times (method_timing.h).
+// it would in motion, with its history, and by the oracle; the error over all frames, how steady it is, and where the
+// camera stands still, how far it lags. Then the methods play the path once more, without the path tracer and without a
+// picture, for their times (method_timing.h).
 #pragma once
 
 #include <filesystem>
@@ -37,6 +38,8 @@ private:
     // All frames that an earlier run kept; empty unless it kept every one. The first frame's cell is kept last, with
     // the times.
     std::vector<std::vector<PlaneImage>> load_cells() const;
+    Series& series_of(const PlaneImage& image);
+    Method method_of(const Series& series) const;  // as it runs in this scene
     void make_pipelines(RunResults& results);
     Frame render_truth(int frame, RunResults& results);
     FrameRequest request_for(int frame, const Frame& truth) const;
@@ -45,6 +48,10 @@ private:
     bool time_methods(RunResults& results);
     bool time_methods(const std::string& plane, RunResults& results);
     void keep_first_cell(std::vector<PlaneImage> images) const;
+    // What every method shows at the moment of the last frame from then on, until it has settled: for each, the sum of
+    // these pictures and the mean of the settled ones. Empty when stopped.
+    std::vector<PlaneImage> render_held(const Frame& truth, RunResults& results);
+    void add_held(const Frame& truth, RunResults& results);
     std::vector<PlaneImage> render_oracle(int frame, const Frame& truth, RunResults& results);
     void add(const PlaneImage& image, int frame, const Frame& truth, const std::vector<Region>& regions);
     void write_rows(RunResults& results);
@@ -58,6 +65,7 @@ private:
     std::filesystem::path folder_;
     ReferenceRenderer references_;
     bool scene_moves_ = false;
+    bool tells_lag_ = false;  // the camera stands still, and the scene does not (metrics/path_lag.h)
     std::unique_ptr<PathTracer> tracer_;
     std::vector<std::unique_ptr<Series>> series_;  // by plane, then by method; the oracle's follow the methods'
     std::vector<std::vector<Image>> truths_;       // by plane, then by frame: for pictures

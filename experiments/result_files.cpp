@@ -51,6 +51,10 @@ Json measures_json(const std::vector<std::pair<std::string, double>>& measures) 
 
 void add_path(const ResultRow& row, Json& json) {
     if (row.stability) json["stability"] = stability_json(*row.stability);
+    if (row.lag) {
+        json["lag"] = {
+            {"frames", row.lag->value}, {"lower", number_json(row.lag->lower)}, {"upper", number_json(row.lag->upper)}};
+    }
     for (const RegionError& region : row.regions) {
         if (region.stability) json["regions"][region.region]["stability"] = stability_json(*region.stability);
     }
@@ -204,19 +208,20 @@ std::string csv_text(const std::string& text) {
 std::string print_csv(const RunResults& results) {
     std::string text = fmt::format(
         "{},curve,curve_parameter,curve_value,oracle_layers,path_tracer_samples,measured,reference_samples,seeds,"
-        "mse_lower_over_seeds,mse_upper_over_seeds{}{}{},milliseconds,milliseconds_lower_quartile,"
-        "milliseconds_upper_quartile,repetitions,gbuffer_bytes_per_pixel,refusal\n",
+        "mse_lower_over_seeds,mse_upper_over_seeds{}{},lag,lag_lower,lag_upper{},milliseconds,"
+        "milliseconds_lower_quartile,milliseconds_upper_quartile,repetitions,gbuffer_bytes_per_pixel,refusal\n",
         row_columns, columns(measure_names()), columns(stability_names()), columns(fidelity_names()));
     for (const ResultRow& row : results.rows) {
+        const Estimate lag = row.lag.value_or(Estimate{no_value, no_value, no_value});
         text += fmt::format(
-            "{},{},{},{},{},{},{},{},{},{},{}{}{}{},{},{},{},{},{},{}\n", row_names(row), csv_text(row.curve),
+            "{},{},{},{},{},{},{},{},{},{},{}{}{},{},{},{}{},{},{},{},{},{},{}\n", row_names(row), csv_text(row.curve),
             csv_text(row.curve_parameter), row.curve.empty() ? "" : csv_number(row.curve_value),
             row.oracle_layers >= 0 ? fmt::format("{}", row.oracle_layers) : "", row.path_tracer_samples,
             row.measured ? 1 : 0, row.reference_samples, row.seeds, csv_number(row.seeds_mse_lower),
             csv_number(row.seeds_mse_upper), values(measure_names(), row.measures), stability_values(row.stability),
-            values(fidelity_names(), row.fidelity), csv_number(row.timing.median),
-            csv_number(row.timing.lower_quartile), csv_number(row.timing.upper_quartile), row.timing.repetitions,
-            row.gbuffer_bytes_per_pixel, csv_text(row.refusal));
+            csv_number(lag.value), csv_number(lag.lower), csv_number(lag.upper), values(fidelity_names(), row.fidelity),
+            csv_number(row.timing.median), csv_number(row.timing.lower_quartile), csv_number(row.timing.upper_quartile),
+            row.timing.repetitions, row.gbuffer_bytes_per_pixel, csv_text(row.refusal));
     }
     return text;
 }

@@ -65,6 +65,7 @@ struct ResultRow {
     std::vector<std::pair<std::string, double>> fidelity;
     std::vector<FrameMeasure> frames;              // of a path
     std::optional<PathStabilityResult> stability;  // of a path
+    std::optional<Estimate> lag;  // frames, of a path with a still camera where something moves (metrics/path_lag.h)
 
     std::string curve, curve_parameter;  // of a method that a sweep made; empty: none
     double curve_value = 0.0;

@@ -124,6 +124,21 @@ Estimate bootstrap_mean(std::vector<BlockSum> blocks, const BootstrapSettings& s
     return with_percentiles(value, std::move(means));
 }
 
+Estimate bootstrap_of_draws(std::size_t blocks, const std::function<double(const std::vector<double>&)>& statistic,
+                            const BootstrapSettings& settings) {
+    require_resamples(settings.resamples);
+    const double value = statistic(std::vector<double>(blocks, 1.0));
+    Random random(settings.seed);
+    std::vector<double> drawn;
+    for (int i = 0; i < settings.resamples; ++i) {
+        const double of_draw = statistic(draw_counts(random, blocks));
+        if (std::isfinite(of_draw)) drawn.push_back(of_draw);
+    }
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    if (drawn.size() < static_cast<std::size_t>(fewest_resamples)) return {value, -infinity, infinity};
+    return with_percentiles(value, std::move(drawn));
+}
+
 void BlockSeries::add(std::vector<BlockSum> frame) {
     if (!frames_.empty() && frames_.front().size() != frame.size()) {
         throw ImageError(

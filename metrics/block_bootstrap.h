@@ -13,6 +13,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "frames/image.h"
@@ -71,7 +72,13 @@ private:
 // only one does. Throws ImageError for fewer than 40 resamples.
 Estimate bootstrap_mean(std::vector<BlockSum> blocks, const BootstrapSettings& settings = {});
 
-// The same over a series, fed frame by frame; it keeps one sum per block and frame.
+// Of any number that follows from an image's blocks, such as a ratio of two sums: `statistic` is told how often each of
+// `blocks` blocks counts. Draws whose statistic is not finite are left out; infinite to both sides where fewer than 40
+// are left. Throws ImageError for fewer than 40 resamples.
+Estimate bootstrap_of_draws(std::size_t blocks, const std::function<double(const std::vector<double>&)>& statistic,
+                            const BootstrapSettings& settings = {});
+
+// The mean over a series, fed frame by frame; it keeps one sum per block and frame.
 class BlockSeries {
 public:
     // Frames are drawn in runs of so many at most, halved until there are 8 runs. 1: one by one, for members that have

@@ -74,6 +74,7 @@ TEST(ResultFiles, TellIntervalsRegionsStabilityAndFidelity) {
     row.regions[0].stability = sample_stability(0.02);
     row.regions[1].measured = false;
     row.stability = sample_stability(0.01);
+    row.lag = Estimate{5.5, 5.25, 5.75};
     row.fidelity = {{"depth_error_mean", 0.5}};
     row.seeds = 4, row.over_seeds = {{"mae", {0.5, 0.25, 0.75}}};
     const auto whole = read_csv(print_csv(results)).at(0);
@@ -82,6 +83,8 @@ TEST(ResultFiles, TellIntervalsRegionsStabilityAndFidelity) {
     EXPECT_EQ(whole.at("method_warping_upper"), "0.55");
     EXPECT_EQ(whole.at("temporal_variance"), "0.01");
     EXPECT_EQ(whole.at("temporal_variance_lower"), "0.009");
+    EXPECT_EQ(whole.at("lag"), "5.5");
+    EXPECT_EQ(whole.at("lag_upper"), "5.75");
     EXPECT_EQ(whole.at("depth_error_mean"), "0.5");
     for (const char* name : {"mae_lower", "psnr_upper", "ssim_lower", "p99_upper", "relative_mse_tev_lower"})
         EXPECT_EQ(whole.at(name), "0") << name;
@@ -110,6 +113,7 @@ TEST(ResultFiles, TellIntervalsRegionsStabilityAndFidelity) {
 
     const auto json = nlohmann::json::parse(print_json(results))["rows"][0];
     EXPECT_EQ(json["regions"]["border"]["measures"]["flip_lower"], 0.0625);
+    EXPECT_EQ(json["lag"]["lower"], 5.25);
     EXPECT_EQ(json["regions"]["border"]["unbiased_mse"], 0.04);
     EXPECT_EQ(json["stability"]["truth_warping"], 0.4);
     EXPECT_EQ(json["stability"]["trustworthy"], true);

@@ -158,6 +158,50 @@ TEST_F(Run, APathHasAnErrorForEachFrameAFlickerBetweenThemAndPictures) {
     EXPECT_EQ(pictures, 3 * 2 * (1 + 2 * 4));
 }
 
+// Of a filter that keeps the share alpha: alpha / (1 - alpha) frames (metrics/path_lag.h).
+TEST_F(Run, TheTemporalFilterLagsAsItsWeightsSayWhereTheLampMoves) {
+    std::ofstream(folder_->path / "lag.toml") << R"(planes = ["indirect"]
+resolution = [64, 36]
+path_tracer_samples = []
+methods = [{name = "filter", base = "one_layer", sweep = {"radiosity.temporal.alpha" = [0.5, 0.8]}}]
+[measures]
+flip = "none"
+[reference]
+samples = 2
+path_samples = 128
+[[scenes]]
+scene = "cornell-moving-lamp"
+views = ["front"]
+ao_radius = 0.1
+indirect_radius = 0.3
+method.radiosity.temporal.vary_taps = false
+[[scenes.paths]]
+path = "standing-front"
+frames = 3
+[[scenes.paths]]
+path = "strafe"
+frames = 2
+)";
+    const std::vector<std::string> command = {"run",         (folder_->path / "lag.toml").string(),
+                                              "--output",    (folder_->path / "lag").string(),
+                                              "--cache-dir", (folder_->path / "cache").string()};
+    const ProgramRun run = run_plumbline(command);
+    ASSERT_EQ(run.exit_code, 0) << run.output;
+    int lags = 0;
+    const auto json = results("lag");
+    for (const auto& row : json["rows"]) {
+        const bool standing = row.contains("path") && row["path"] == "standing-front";
+        ASSERT_EQ(row.contains("lag"), standing) << "of a moving camera there is none";
+        if (!standing) continue;
+        ++lags;
+        // The taps are the same in every frame, so that nothing but the weights shows; half floats keep history to a
+        // thousandth, and thirds of what is left over some 70 frames to some hundredths of a frame.
+        EXPECT_NEAR(row["lag"]["frames"].get<double>(), row["sweep"]["value"] == 0.5 ? 1.0 : 4.0, 0.1) << row["lag"];
+        EXPECT_LE(row["lag"]["lower"], row["lag"]["upper"]);
+    }
+    EXPECT_EQ(lags, 2);
+}
+
 TEST_F(Run, IsRepeatedBitForBitFromItsResults) {
     const auto record = folder_->path / "first/results.json";
     const ProgramRun again = run_plumbline({"run", record.string(), "--output", (folder_->path / "again").string(),

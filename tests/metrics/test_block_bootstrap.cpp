@@ -79,6 +79,22 @@ TEST(BootstrapMean, MatchesSciPy) {
     EXPECT_NEAR(mean.upper, 0.31024428, 0.0022);
 }
 
+TEST(BootstrapOfDraws, OfAMeanIsThatOfTheMean) {
+    std::vector<double> values(100);
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = std::pow(static_cast<double>(i * 37 % 101) / 100.0, 3);
+    const auto mean = [&](const std::vector<double>& counts) {
+        double sum = 0;
+        for (std::size_t i = 0; i < values.size(); ++i) sum += counts[i] * values[i];
+        return sum / 100.0;
+    };
+    const Estimate drawn = bootstrap_of_draws(100, mean, {.resamples = 20000});
+    // SciPy's, as above.
+    EXPECT_NEAR(drawn.value, 0.25240356, 1e-12);
+    EXPECT_NEAR(drawn.lower, 0.19685561, 0.0022);
+    EXPECT_NEAR(drawn.upper, 0.31024428, 0.0022);
+    EXPECT_TRUE(std::isinf(bootstrap_of_draws(100, [](const auto&) { return NAN; }).upper));
+}
+
 TEST(Estimate, RootOfAnUnbiasedSquareBelowZeroIsZero) {
     const Estimate root = Estimate{0.25, -0.01, 4.0}.root();
     EXPECT_DOUBLE_EQ(root.value, 0.5);
