@@ -22,13 +22,6 @@ MeanSummary summarise(const std::vector<double>& values, QuantityKind kind) {
     return summary;
 }
 
-std::vector<double> values_of(const std::vector<MeasuredCase>& cases) {
-    std::vector<double> values;
-    values.reserve(cases.size());
-    for (const MeasuredCase& entry : cases) values.push_back(entry.value);
-    return values;
-}
-
 bool matches(const Cell& cell, const MeasuredQuantity& quantity, const Selector& half) {
     return quantity.where.matches(cell) && half.matches(cell);
 }
@@ -124,15 +117,25 @@ bool is_outside(const Claim& claim, double lower, double upper) {
     return (claim.above && upper < *claim.above) || (claim.below && lower > *claim.below);
 }
 
+std::ptrdiff_t cases_inside(const Claim& claim, const Measured& measured) {
+    return std::ranges::count_if(measured.cases,
+                                 [&](const MeasuredCase& entry) { return is_inside(claim, entry.value, entry.value); });
+}
+
+std::string mean_text(const Claim& claim, const MeanSummary& summary) {
+    return fmt::format("{}{}{}", short_number(summary.mean), claim.unit,
+                       claim.quantity.kind == QuantityKind::ratio ? " times" : "");
+}
+
 std::string scenes_text(const Claim& claim, const Measured& measured, const std::vector<std::string>& scenes) {
     std::vector<std::string> texts;
     texts.reserve(scenes.size());
     for (const std::string& scene : scenes)
-        texts.push_back(fmt::format("{} ({})", scene, measured_text(claim, measured.of_scene(scene))));
+        texts.push_back(fmt::format("{} ({})", scene, scene_text(claim, measured, scene)));
     return fmt::format("{}", fmt::join(texts, ", "));
 }
 
-// Of a claim whose interval includes a bound, or that scenes answer differently.
+// Of a claim whose cases or scenes answer differently.
 std::string dependence(const Claim& claim, const Measured& measured) {
     std::vector<std::string> inside, elsewhere;
     for (const std::string& scene : measured.scenes()) {
@@ -143,22 +146,25 @@ std::string dependence(const Claim& claim, const Measured& measured) {
         return fmt::format("on the scene: holds in {}; not in {}", scenes_text(claim, measured, inside),
                            scenes_text(claim, measured, elsewhere));
     }
-    const auto count = std::ranges::count_if(
-        measured.cases, [&](const MeasuredCase& entry) { return is_inside(claim, entry.value, entry.value); });
-    const bool all_agree = count == 0 || count == std::ssize(measured.cases);
-    return fmt::format("on {}: holds in {} of {}",
-                       all_agree ? "more views than these, which differ widely" : "the view", count,
-                       measured.cases.size());
+    return fmt::format("on the view: holds in {} of {}", cases_inside(claim, measured), measured.cases.size());
+}
+
+// Of a claim whose interval includes a bound, though its cases agree.
+std::string indecision(const Claim& claim, const Measured& measured) {
+    return fmt::format("it holds in {} of {} cases, which are too few, or differ too widely, for their mean to be told",
+                       cases_inside(claim, measured) == 0 ? "none" : "all", measured.cases.size());
 }
 
 }  // namespace
 
-MeanSummary Measured::of_scene(const std::string& scene) const {
+MeanSummary Measured::of_scene(const std::string& scene) const { return summarise(values_of(scene), kind); }
+
+std::vector<double> Measured::values_of(const std::string& scene) const {
     std::vector<double> values;
     for (const MeasuredCase& entry : cases) {
         if (entry.scene == scene) values.push_back(entry.value);
     }
-    return summarise(values, kind);
+    return values;
 }
 
 std::vector<std::string> Measured::scenes() const {
@@ -184,7 +190,10 @@ Measured measure_quantity(const std::vector<Cell>& cells, const MeasuredQuantity
             add_pairs(cells, quantity, measured);
             break;
     }
-    measured.summary = summarise(values_of(measured.cases), measured.kind);
+    std::vector<double> values;
+    values.reserve(measured.cases.size());
+    for (const MeasuredCase& entry : measured.cases) values.push_back(entry.value);
+    measured.summary = summarise(values, measured.kind);
     return measured;
 }
 
@@ -196,6 +205,8 @@ std::string to_string(ClaimVerdict verdict) {
             return "fails";
         case ClaimVerdict::depends:
             return "depends";
+        case ClaimVerdict::undecided:
+            return "not decided";
         case ClaimVerdict::untested:
             break;
     }
@@ -221,6 +232,9 @@ ClaimResult judge_claim(const Claim& claim, const Measured& measured) {
         result.verdict = ClaimVerdict::holds;
     } else if (is_outside(claim, all.lower, all.upper) && !some_scene_holds) {
         result.verdict = ClaimVerdict::fails;
+    } else if (const auto count = cases_inside(claim, measured); count == 0 || count == std::ssize(measured.cases)) {
+        result.verdict = ClaimVerdict::undecided;
+        result.reason = indecision(claim, measured);
     } else {
         result.verdict = ClaimVerdict::depends;
         result.reason = dependence(claim, measured);
@@ -239,10 +253,17 @@ std::string range_text(const Claim& claim) {
     return fmt::format("{}", fmt::join(parts, " and "));
 }
 
+std::string scene_text(const Claim& claim, const Measured& measured, const std::string& scene) {
+    const std::vector<double> values = measured.values_of(scene);
+    const MeanSummary summary = measured.of_scene(scene);
+    if (values.size() != 2) return measured_text(claim, summary);
+    return fmt::format("{} (2 cases: {}, {})", mean_text(claim, summary), short_number(values[0]),
+                       short_number(values[1]));
+}
+
 std::string measured_text(const Claim& claim, const MeanSummary& summary) {
     if (summary.count == 0) return "-";
-    std::string text = fmt::format("{}{}", short_number(summary.mean), claim.unit);
-    if (claim.quantity.kind == QuantityKind::ratio) text += " times";
+    std::string text = mean_text(claim, summary);
     if (std::isfinite(summary.lower) && std::isfinite(summary.upper))
         text += fmt::format(" [{}, {}]", short_number(summary.lower), short_number(summary.upper));
     return text;

@@ -6,6 +6,7 @@
 //   holds     the interval lies where the claim says
 //   fails     the interval lies elsewhere
 //   depends   it does both, or scenes contradict each other: one holds and another fails by intervals of their own
+//   not decided  the interval does both, though all cases agree: they are too few, or differ too widely
 //   untested  fewer than two cases could be measured
 #pragma once
 
@@ -31,12 +32,13 @@ struct Measured {
     // The same of one scene's cases alone.
     MeanSummary of_scene(const std::string& scene) const;
     std::vector<std::string> scenes() const;  // in the order of the cases
+    std::vector<double> values_of(const std::string& scene) const;
 };
 
 // Throws ConfigError where two cells fit the same half of a ratio or difference, because the selectors name too little.
 Measured measure_quantity(const std::vector<Cell>& cells, const MeasuredQuantity& quantity);
 
-enum class ClaimVerdict { holds, fails, depends, untested };
+enum class ClaimVerdict { holds, fails, depends, undecided, untested };
 std::string to_string(ClaimVerdict verdict);
 
 struct ClaimResult {
@@ -44,7 +46,7 @@ struct ClaimResult {
     Claim claim;
     Measured measured;
     ClaimVerdict verdict = ClaimVerdict::untested;
-    std::string reason;  // on what it depends, or why it could not be tested; else empty
+    std::string reason;  // on what it depends, or why it was not decided or not tested; else empty
 };
 
 ClaimResult judge_claim(const Claim& claim, const Measured& measured);
@@ -54,5 +56,8 @@ ClaimResult judge_claim(const Claim& claim, const std::vector<Cell>& cells);
 std::string range_text(const Claim& claim);
 // "1.87 times [1.6, 2.1]", "0.3 ms [0.1, 0.5]"; without the interval where there is none.
 std::string measured_text(const Claim& claim, const MeanSummary& summary);
+// The same of one scene. Of two cases both stand there instead of an interval, which one degree of freedom makes
+// meaninglessly wide: "1.9 times (2 cases: 1.6, 2.1)".
+std::string scene_text(const Claim& claim, const Measured& measured, const std::string& scene);
 
 }  // namespace plumb

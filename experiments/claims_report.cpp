@@ -26,7 +26,7 @@ std::string verdict_text(const ClaimRecord& record) {
 
 }  // namespace
 
-ClaimRecord record_of(const ClaimResult& result, bool quick) {
+ClaimRecord record_of(const ClaimResult& result, bool quick, const std::string& key) {
     ClaimRecord record{result.experiment,
                        result.claim.claim,
                        result.claim.source,
@@ -38,16 +38,17 @@ ClaimRecord record_of(const ClaimResult& result, bool quick) {
                        {},
                        result.measured.summary.count,
                        result.measured.missing,
-                       quick};
+                       quick,
+                       key};
     for (const std::string& scene : result.measured.scenes())
-        record.scenes.emplace_back(scene, measured_text(result.claim, result.measured.of_scene(scene)));
+        record.scenes.emplace_back(scene, scene_text(result.claim, result.measured, scene));
     return record;
 }
 
-std::string print_claims_json(const std::vector<ClaimResult>& results, bool quick) {
+std::string print_claims_json(const std::vector<ClaimResult>& results, bool quick, const std::string& key) {
     Json json = Json::array();
     for (const ClaimResult& result : results) {
-        const ClaimRecord record = record_of(result, quick);
+        const ClaimRecord record = record_of(result, quick, key);
         const MeanSummary& summary = result.measured.summary;
         Json entry = {{"experiment", record.experiment},
                       {"claim", record.claim},
@@ -63,6 +64,7 @@ std::string print_claims_json(const std::vector<ClaimResult>& results, bool quic
                       {"cases", record.cases},
                       {"missing", record.missing},
                       {"quick", record.quick},
+                      {"key", record.key},
                       {"scenes", Json::array()},
                       {"values", Json::array()}};
         for (const auto& [scene, text] : record.scenes)
@@ -89,7 +91,8 @@ std::vector<ClaimRecord> read_claims_json(const std::filesystem::path& file) {
             ClaimRecord record{entry.at("experiment"), entry.at("claim"),    entry.at("source"),
                                entry.at("test"),       entry.at("measured"), entry.at("range"),
                                entry.at("verdict"),    entry.at("reason"),   {},
-                               entry.at("cases"),      entry.at("missing"),  entry.at("quick")};
+                               entry.at("cases"),      entry.at("missing"),  entry.at("quick"),
+                               entry.value("key", "")};  // none in files of programs that told none
             for (const Json& scene : entry.at("scenes"))
                 record.scenes.emplace_back(scene.at("scene"), scene.at("measured"));
             records.push_back(std::move(record));
@@ -118,17 +121,20 @@ std::string print_claims_markdown(const std::vector<ClaimRecord>& records, const
         "What the texts that this program grew from say and what can be checked: where it stands, how it was tested, "
         "what "
         "was measured and whether it holds. Made by `{}`.\n\n"
-        "{} claims: {} hold, {} fail, {} depend on what is seen, {} could not be tested.\n\n"
+        "{} claims: {} hold, {} fail, {} depend on what is seen, {} were not decided, {} could "
+        "not be tested.\n\n"
         "000 is Nielsen's thesis (2015), 001 Tohidi Far's paper (2019), 002 OGLdev's tutorial 36, 003 the journal of a "
         "dissertation. A figure is the mean over views, paths or walks (ratios: geometric) with the 95 % interval of "
         "that "
         "mean; a claim holds where the whole interval lies in the range that stands below it, fails where it lies "
         "wholly "
-        "outside, and depends where it does both or where scenes contradict each other. Times are those of a software "
-        "rasteriser; only their ratios are compared.\n\n"
+        "outside, depends where it does both or where scenes contradict each other, and is not decided where it does "
+        "both though all cases agree: these are too few, or differ too widely. Of scenes with two cases both stand in "
+        "place of an interval. Times are those of a software rasteriser; only their ratios are compared.\n\n"
         "| # | claim | where | how it was tested | measured | verdict | experiment |\n|---|---|---|---|---|---|---|\n",
         command, records.size(), count_of(records, ClaimVerdict::holds), count_of(records, ClaimVerdict::fails),
-        count_of(records, ClaimVerdict::depends), count_of(records, ClaimVerdict::untested));
+        count_of(records, ClaimVerdict::depends), count_of(records, ClaimVerdict::undecided),
+        count_of(records, ClaimVerdict::untested));
     int index = 0;
     bool any_quick = false;
     for (const ClaimRecord& record : records) {

@@ -18,12 +18,13 @@ struct ClaimRecord {
     std::vector<std::pair<std::string, std::string>> scenes;  // each scene's own figure
     int cases = 0, missing = 0;
     bool quick = false;  // of a trial run, which proves nothing
+    std::string key;     // of what was measured with what (reproduction_key.h); empty where that is not known
 };
 
-ClaimRecord record_of(const ClaimResult& result, bool quick);
+ClaimRecord record_of(const ClaimResult& result, bool quick, const std::string& key = "");
 
 // Records and, of each, the mean and interval as numbers.
-std::string print_claims_json(const std::vector<ClaimResult>& results, bool quick);
+std::string print_claims_json(const std::vector<ClaimResult>& results, bool quick, const std::string& key = "");
 // Throws ConfigError for a file that is not one.
 std::vector<ClaimRecord> read_claims_json(const std::filesystem::path& file);
 

@@ -216,38 +216,47 @@ ResultTable make_table(const Figure& figure, const std::vector<Cell>& cells) {
     return table;
 }
 
+namespace {
+
+MeanSummary mean_of_row(const Originals& originals, const OriginalRow& row, const std::vector<Cell>& cells) {
+    const MeasuredQuantity quantity{originals.measure, QuantityKind::value, originals.where, row.of, {}};
+    return average(measure_quantity(cells, quantity).cases, true);
+}
+
+// Of one row to the row that it is over, paired view by view where both have the same views, else of their means.
+std::string ratio_text(const Originals& originals, const OriginalRow& row, const OriginalRow& over,
+                       const std::vector<Cell>& cells) {
+    const MeasuredQuantity quantity{originals.measure, QuantityKind::ratio, originals.where, row.of, over.of};
+    const MeanSummary paired = measure_quantity(cells, quantity).summary;
+    if (paired.count > 1)
+        return fmt::format("{} [{}, {}]", short_number(paired.mean), short_number(paired.lower),
+                           short_number(paired.upper));
+    if (paired.count == 1) return short_number(paired.mean);
+    const MeanSummary ours = mean_of_row(originals, row, cells), theirs = mean_of_row(originals, over, cells);
+    return ours.count > 0 && theirs.count > 0 ? short_number(ours.mean / theirs.mean) : "-";
+}
+
+}  // namespace
+
 ResultTable make_originals_table(const Originals& originals, const std::vector<Cell>& cells) {
-    const OriginalRow& base = *std::ranges::find(originals.rows, originals.base, &OriginalRow::name);
-    const auto quantity_of = [&](const OriginalRow& row) {
-        MeasuredQuantity quantity;
-        quantity.measure = originals.measure, quantity.where = originals.where, quantity.first = row.of;
-        return quantity;
-    };
-    const auto mean_of = [&](const OriginalRow& row) {
-        return average(measure_quantity(cells, quantity_of(row)).cases, true);
-    };
     ResultTable table;
     const std::string unit = originals.unit.empty() ? "" : fmt::format(", {}", originals.unit);
-    table.columns = {originals.title, "original" + unit, "to base", "here" + unit, "to base [95 %]", "views"};
+    table.columns = {originals.title, "original" + unit, "here" + unit,        "here / original",
+                     "over",          "ratio, original", "ratio, here [95 %]", "views"};
     for (const OriginalRow& row : originals.rows) {
-        const MeanSummary ours = mean_of(row);
-        MeasuredQuantity ratio = quantity_of(row);
-        ratio.kind = QuantityKind::ratio, ratio.second = base.of;
-        const Measured paired = measure_quantity(cells, ratio);
-        std::string ratio_text = "-";
-        if (row.name == base.name) {
-            ratio_text = ours.count > 0 ? "1" : "-";
-        } else if (paired.summary.count > 0) {
-            ratio_text = short_number(paired.summary.mean);
-            if (paired.summary.count > 1)
-                ratio_text +=
-                    fmt::format(" [{}, {}]", short_number(paired.summary.lower), short_number(paired.summary.upper));
-        } else if (const MeanSummary ours_base = mean_of(base); ours.count > 0 && ours_base.count > 0) {
-            ratio_text = short_number(ours.mean / ours_base.mean);
+        const MeanSummary ours = mean_of_row(originals, row, cells);
+        std::vector<std::string> line = {row.name, short_number(row.original),
+                                         ours.count > 0 ? short_number(ours.mean) : "not here",
+                                         ours.count > 0 ? short_number(ours.mean / row.original) : "-"};
+        if (row.over.empty()) {
+            line.insert(line.end(), {"-", "-", "-"});
+        } else {
+            const OriginalRow& over = *std::ranges::find(originals.rows, row.over, &OriginalRow::name);
+            line.insert(line.end(), {over.name, short_number(row.original / over.original),
+                                     ratio_text(originals, row, over, cells)});
         }
-        table.rows.push_back({row.name, short_number(row.original), short_number(row.original / base.original),
-                              ours.count > 0 ? short_number(ours.mean) : "not here", ratio_text,
-                              fmt::format("{}", ours.count)});
+        line.push_back(fmt::format("{}", ours.count));
+        table.rows.push_back(std::move(line));
     }
     return table;
 }

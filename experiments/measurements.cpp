@@ -63,6 +63,7 @@ std::string print_measurements_json(const Measurements& measurements) {
                  {"cpu", measurements.cpu},
                  {"seconds", measurements.seconds},
                  {"quick", measurements.quick},
+                 {"program", measurements.program},
                  {"key", measurements.key},
                  {"left_out", measurements.left_out},
                  {"failures", Json::array()},
@@ -83,6 +84,7 @@ Measurements read_measurements_json(const std::filesystem::path& file) {
         measurements.experiment = json.at("experiment"), measurements.command = json.at("command");
         measurements.started = json.at("started"), measurements.renderer = json.at("renderer");
         measurements.cpu = json.at("cpu"), measurements.seconds = json.at("seconds");
+        measurements.program = json.value("program", "");
         measurements.key = json.value("key", "");  // none in files of programs that kept none
         measurements.quick = json.at("quick"), measurements.left_out = json.at("left_out");
         for (const Json& failure : json.at("failures"))

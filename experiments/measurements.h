@@ -15,6 +15,7 @@ struct Measurements {
     double seconds = 0.0;
     bool quick = false;        // a trial run, which proves nothing
     bool interrupted = false;  // then incomplete, and never kept
+    std::string program;       // version, and git's description of its sources
     std::string key;           // of what was measured with what (reproduction_key.h)
     std::vector<Cell> cells;
     std::vector<PictureSet> pictures;   // files relative to the folder `run` beside the kept file

@@ -97,15 +97,18 @@ Originals read_originals(ConfigReader& reader) {
         if (!row.has("original")) row.fail("original", "is missing: the number that the source prints");
         entry.original = row.number("original", 0.0, 0.0, no_limit);
         entry.of = optional_selector(row, "of");
+        entry.over = row.text("over", "");
         row.finish();
         originals.rows.push_back(std::move(entry));
     }
     if (originals.rows.empty()) reader.fail("", "'rows' is missing: write at least one");
-    originals.base = reader.text("base", originals.rows.front().name);
     std::vector<std::string> names;
     for (const OriginalRow& row : originals.rows) names.push_back(row.name);
-    if (std::ranges::find(names, originals.base) == names.end())
-        reader.fail("base", fmt::format("no row '{}'; {}", originals.base, name_hint(originals.base, names)));
+    for (const OriginalRow& row : originals.rows) {
+        if (!row.over.empty() && std::ranges::find(names, row.over) == names.end())
+            reader.fail("rows",
+                        fmt::format("'{}' is over no row '{}'; {}", row.name, row.over, name_hint(row.over, names)));
+    }
     reader.finish();
     return originals;
 }

@@ -60,12 +60,12 @@ struct OriginalRow {
     std::string name;
     double original = 0.0;
     Selector of;
+    std::string over;  // the row that it is divided by; empty: none
 };
 
-// Numbers that a seed prints. Their machine is not ours, so that ratios to one of the rows are compared.
+// Numbers that a seed prints. Their machine is not ours, so that ratios of two rows are compared.
 struct Originals {
     std::string title, source, measure, unit;
-    std::string base;  // the row that others are divided by
     Selector where;
     std::vector<OriginalRow> rows;
 };

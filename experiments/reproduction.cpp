@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "embedded/reproductions.h"
+#include "experiments/build_facts.h"
 #include "experiments/experiment_file.h"
 #include "experiments/generation.h"
 #include "experiments/light_fragments.h"
@@ -208,6 +209,7 @@ Measurements run_reproduction(const Reproduction& reproduction, const SceneFinde
     }
     measurements.experiment = reproduction.name, measurements.command = options.command;
     measurements.quick = quick;
+    measurements.program = fmt::format("{} ({})", build_facts().version, build_facts().git_describe);
     return measurements;
 }
 

@@ -16,8 +16,17 @@ namespace {
 // As a sentence, with a space before it; empty where a verdict needs no reason.
 std::string reason_text(const ClaimRecord& record) {
     if (record.reason.empty()) return "";
-    const bool depends = record.verdict == to_string(ClaimVerdict::depends);
-    return fmt::format(" It {} {}.", depends ? "depends" : "could not be tested:", record.reason);
+    if (record.verdict == to_string(ClaimVerdict::depends)) return fmt::format(" It depends {}.", record.reason);
+    return fmt::format(" It {}: {}.",
+                       record.verdict == to_string(ClaimVerdict::undecided) ? "was not decided" : "could not be tested",
+                       record.reason);
+}
+
+// What a result that has gone stale is known by.
+std::string key_text(const Measurements& measurements) {
+    return fmt::format("Program {}; key `{}`, which another file, scene, method or program would change.",
+                       measurements.program.empty() ? "unknown" : measurements.program,
+                       measurements.key.empty() ? "unknown" : measurements.key);
 }
 
 // Writes the files of one reproduction and gathers what its README.md and the terminal show.
@@ -104,6 +113,11 @@ private:
         const Originals& originals = reproduction_.presentation.originals[index];
         add_table(originals.title, originals.source, fmt::format("originals-{}", index + 1),
                   make_originals_table(originals, measurements_.cells));
+        readme_ +=
+            "\nThe original's machine is not ours: 'here / original' says how far they are apart, and is alike in all "
+            "rows where times behave as in the original. Where a row names another in 'over', the two columns behind "
+            "it "
+            "are the ratio of the two, in the original and here, with the 95 % interval over views.\n";
     }
 
     void add_claims() {
@@ -112,10 +126,10 @@ private:
         for (const Claim& claim : reproduction_.presentation.claims) {
             ClaimResult result = judge_claim(claim, measurements_.cells);
             result.experiment = reproduction_.name;
-            records.push_back(record_of(result, measurements_.quick));
+            records.push_back(record_of(result, measurements_.quick, measurements_.key));
             presented_.claims.push_back(std::move(result));
         }
-        write("claims.json", print_claims_json(presented_.claims, measurements_.quick));
+        write("claims.json", print_claims_json(presented_.claims, measurements_.quick, measurements_.key));
         add_heading("Claims", "");
         for (const ClaimRecord& record : records) {
             readme_ += fmt::format("- **{}** {} ({}) {}: {}, has to be {}.{}\n", record.verdict, record.claim,
@@ -130,6 +144,7 @@ private:
         readme_ +=
             fmt::format("`{}`, {}, {} on {}, {:.0f} s. `numbers.csv` holds every number.\n", measurements_.command,
                         measurements_.started, measurements_.renderer, measurements_.cpu, measurements_.seconds);
+        add_text(key_text(measurements_));
         for (const CellFailure& failure : measurements_.failures)
             add_text(fmt::format("Failed: {}: {}", failure.cell, failure.message));
     }

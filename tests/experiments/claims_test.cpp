@@ -83,6 +83,24 @@ TEST(Claims, DependsOnTheViewWhereTheIntervalIncludesTheBound) {
     EXPECT_EQ(result.reason, "on the view: holds in 2 of 3");
 }
 
+TEST(Claims, IsNotDecidedWhereTheIntervalIncludesTheBoundThoughAllCasesAgree) {
+    const auto all = judge_claim(ratio_claim({}, 1.0), cells_with_ratios("room", {0.3, 0.9, 0.95}));
+    EXPECT_EQ(all.verdict, ClaimVerdict::undecided);
+    EXPECT_THAT(all.reason, HasSubstr("holds in all of 3 cases"));
+    const auto none = judge_claim(ratio_claim(1.0, {}), cells_with_ratios("room", {0.3, 0.9}));
+    EXPECT_EQ(none.verdict, ClaimVerdict::undecided);
+    EXPECT_THAT(none.reason, HasSubstr("holds in none of 2 cases"));
+    EXPECT_EQ(to_string(none.verdict), "not decided");
+}
+
+TEST(Claims, TwoCasesOfASceneStandInPlaceOfTheirInterval) {
+    const Claim claim = ratio_claim({}, 1.0);
+    const Measured measured = measure_quantity(
+        cells_with_ratios("room", {0.5, 2.0}) + cells_with_ratios("hall", {0.5, 0.5, 0.5}), claim.quantity);
+    EXPECT_EQ(scene_text(claim, measured, "room"), "1 times (2 cases: 0.5, 2)");
+    EXPECT_EQ(scene_text(claim, measured, "hall"), "0.5 times [0.5, 0.5]");
+}
+
 TEST(Claims, DependsOnTheSceneAndSaysWhich) {
     const auto cells = cells_with_ratios("room", {0.5, 0.51, 0.49}) + cells_with_ratios("hall", {1.5, 1.51, 1.49});
     const auto result = judge_claim(ratio_claim({}, 1.0), cells);
@@ -183,7 +201,7 @@ TEST(ClaimsReport, FilesReadBackAndFillTheTable) {
     EXPECT_EQ(records[0].scenes, record_of(result, false).scenes);
     EXPECT_EQ(records[0].cases, 3);
     const std::string table = print_claims_markdown(records, "plumbline reproduce --all");
-    EXPECT_THAT(table, HasSubstr("1 claims: 0 hold, 0 fail, 1 depend"));
+    EXPECT_THAT(table, HasSubstr("1 claims: 0 hold, 0 fail, 1 depend on what is seen, 0 were not decided"));
     EXPECT_THAT(table, HasSubstr("| 1 | a \\| b | 000, section 1 |"));
     EXPECT_THAT(table, HasSubstr("**depends**: on the view: holds in 2 of 3"));
     EXPECT_THAT(table, HasSubstr("has to be below 1; 3 cases"));

@@ -11,6 +11,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "experiments/claims_report.h"
 #include "experiments/experiment_file.h"
 #include "experiments/figures.h"
 #include "experiments/svg_raster.h"
@@ -128,10 +129,10 @@ TEST(Presentation, ClaimsNeedAQuantityAndARange) {
     EXPECT_THAT(complaint_about(claim_with("value = {}\nbelow = 1.0\nbelwo = 2.0\n")), HasSubstr("'below'"));
 }
 
-TEST(Presentation, OriginalsNeedTheirBaseAmongTheRows) {
-    EXPECT_THAT(complaint_about("[[originals]]\ntitle = \"o\"\nsource = \"s\"\nmeasure = \"ms\"\nbase = \"b\"\n"
-                                "rows = [{ name = \"a\", original = 1.0 }]\n"),
-                HasSubstr("no row 'b'"));
+TEST(Presentation, OriginalsAreDividedByRowsThatThereAre) {
+    EXPECT_THAT(complaint_about("[[originals]]\ntitle = \"o\"\nsource = \"s\"\nmeasure = \"ms\"\n"
+                                "rows = [{ name = \"a\", original = 1.0, over = \"b\" }]\n"),
+                HasSubstr("'a' is over no row 'b'"));
 }
 
 TEST(OptionalScenes, AreLeftOutWithTheReasonUnlessNoneIsLeft) {
@@ -252,14 +253,14 @@ TEST(Figures, TablesAverageOverThePlacesThatAllRowsHave) {
 
 TEST(Figures, OriginalsStandBesideOursAsRatios) {
     Originals originals;
-    originals.title = "Time", originals.measure = "ms", originals.unit = "ms", originals.base = "few";
+    originals.title = "Time", originals.measure = "ms", originals.unit = "ms";
     Selector few, many, nowhere;
     few.wanted["parameter"] = {"10"}, many.wanted["parameter"] = {"20"}, nowhere.wanted["scene"] = {"dragon"};
-    originals.rows = {{"few", 1.0, few}, {"many", 3.0, many}, {"elsewhere", 4.0, nowhere}};
+    originals.rows = {{"few", 1.0, few, ""}, {"many", 3.0, many, "few"}, {"elsewhere", 4.0, nowhere, "few"}};
     const ResultTable table = make_originals_table(originals, sample_cells());
-    EXPECT_THAT(table.rows[0], testing::ElementsAre("few", "1", "1", "14.1", "1", "2"));
-    EXPECT_THAT(table.rows[1], testing::ElementsAre("many", "3", "3", "28.3", "2 [2, 2]", "2"));
-    EXPECT_THAT(table.rows[2], testing::ElementsAre("elsewhere", "4", "4", "not here", "-", "0"));
+    EXPECT_THAT(table.rows[0], testing::ElementsAre("few", "1", "14.1", "14.1", "-", "-", "-", "2"));
+    EXPECT_THAT(table.rows[1], testing::ElementsAre("many", "3", "28.3", "9.43", "few", "3", "2 [2, 2]", "2"));
+    EXPECT_THAT(table.rows[2], testing::ElementsAre("elsewhere", "4", "not here", "-", "few", "4", "-", "0"));
 }
 
 double attribute(const std::string& element, const std::string& name) {
@@ -360,6 +361,7 @@ TEST(Measurements, ReadBackAndPresentedFilesAreWhole) {
     reproduction.presentation.claims.push_back(claim);
     Measurements measurements;
     measurements.experiment = "trial", measurements.renderer = "a renderer";
+    measurements.program = "1.0 (abc)", measurements.key = "0123";
     measurements.cells = sample_cells();
     measurements.left_out = {"dragon: not found"};
     const TemporaryFolder folder;
@@ -371,7 +373,9 @@ TEST(Measurements, ReadBackAndPresentedFilesAreWhole) {
     std::ifstream stream(folder.path / "README.md");
     const std::string readme{std::istreambuf_iterator<char>(stream), {}};
     EXPECT_THAT(readme, AllOf(HasSubstr("# A trial"), HasSubstr("Left out: dragon: not found"),
-                              HasSubstr("**holds** more taps err less"), HasSubstr("| taps = 10 | 0.015 |")));
+                              HasSubstr("**holds** more taps err less"), HasSubstr("| taps = 10 | 0.015 |"),
+                              HasSubstr("Program 1.0 (abc); key `0123`")));
+    EXPECT_EQ(read_claims_json(folder.path / "claims.json").at(0).key, "0123");
     const Measurements again = read_measurements_json(folder.path / "measurements.json");
     EXPECT_EQ(print_cells_csv(again.cells), print_cells_csv(measurements.cells));
     EXPECT_EQ(again.left_out, measurements.left_out);
