@@ -251,6 +251,10 @@ std::string tap_reason(const Method& method, std::string_view name) {
     if (!method.ao.use_mip_chain && name.starts_with("ao.mip_")) return "ao.use_mip_chain = false";
     const bool of_chain = name == "radiosity.minimum_mip_level" || name.starts_with("radiosity.mip_");
     if (!method.radiosity.use_mip_chain && of_chain) return "radiosity.use_mip_chain = false";
+    const RadiositySettings& radiosity = method.radiosity;
+    const bool counts_layers = radiosity.estimator == RadiosityEstimator::nielsen2015 && radiosity.layers > 1;
+    if (name == "radiosity.normalisation" && radiosity.samples == 1 && !counts_layers)
+        return "radiosity.samples = 1, so that all taps are the one that may hit";
     if (name == "radiosity.mip_offset" && method.radiosity.minimum_mip_level == coarsest_mip_level)
         return fmt::format("radiosity.minimum_mip_level = {}, the coarsest", coarsest_mip_level);
     return "";

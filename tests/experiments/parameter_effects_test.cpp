@@ -96,6 +96,14 @@ TEST(ParameterEffects, TheCoarsestLevelLeavesNoneToChoose) {
     EXPECT_THAT(reason_without_effect(method, "radiosity.mip_offset"), HasSubstr("radiosity.minimum_mip_level = 5"));
 }
 
+TEST(ParameterEffects, OneTapIsNormalisedByItself) {
+    Method method;
+    method.radiosity.samples = 1;
+    EXPECT_THAT(reason_without_effect(method, "radiosity.normalisation"), HasSubstr("radiosity.samples = 1"));
+    method.radiosity.estimator = RadiosityEstimator::nielsen2015;
+    EXPECT_THAT(reason_without_effect(method, "radiosity.normalisation"), IsEmpty()) << "one in each layer";
+}
+
 TEST(ParameterEffects, AWeightRisesAgainFromTheSecondTapOn) {
     Method method;
     method.ao.blur.radius = method.radiosity.blur.radius = 1;
