@@ -119,10 +119,8 @@ const GlTexture& output_of(const PassResources& resources, const BilateralBlurRe
     return resources.planes.create(request.output, format, resources.layers_of(request.output));
 }
 
-const GlTexture& half_blurred(const PassResources& resources, GLenum format) {
-    const std::string name = fmt::format("half blurred {:#x}", format);
-    return resources.planes.has(name) ? resources.planes.get(name) : resources.planes.create(name, format, 1);
-}
+// Blurred along the rows only.
+std::string half_blurred_plane(const BilateralBlurRequest& request) { return request.name + ", half done"; }
 
 }  // namespace
 
@@ -132,7 +130,7 @@ BilateralBlurPass::BilateralBlurPass(const PassResources& resources, const Bilat
     : noisy_(resources.planes.get(request.input)),
       depth_(resources.planes.get("depth")),
       layer_(request.layer),
-      half_blurred_(half_blurred(resources, noisy_.format())),
+      half_blurred_(resources.planes.create(half_blurred_plane(request), noisy_.format(), 1)),
       along_rows_(resources.context, resources.programs, "bilateral_blur.frag", defines_along("ivec2(1, 0)", request)),
       along_columns_(resources.context, resources.programs, "bilateral_blur.frag",
                      defines_along("ivec2(0, 1)", request)),
@@ -169,9 +167,13 @@ PassDeclaration declare_bilateral_blur(const BilateralBlurRequest& request) {
     PassDeclaration pass{.name = request.name,
                          .inputs = {prefix + request.input, prefix + "depth"},
                          .outputs = {prefix + request.output},
-                         .create = [request](const PassResources& resources) {
-                             return std::make_unique<BilateralBlurPass>(resources, request);
-                         }};
+                         .create =
+                             [request](const PassResources& resources) {
+                                 return std::make_unique<BilateralBlurPass>(resources, request);
+                             },
+                         .scratch = {half_blurred_plane(request)},
+                         // Along the columns, what is only half blurred is read.
+                         .in_place = PassDeclaration::InPlace{request.output, request.input}};
     if (compares_surfaces(request.settings)) {
         pass.inputs.push_back(prefix + "normal");
         if (request.stored_positions) pass.inputs.push_back(prefix + "camera_position");

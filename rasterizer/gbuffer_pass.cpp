@@ -77,6 +77,7 @@ PassDeclaration declare_gbuffer(const Scene& scene, const Method& method) {
         if (method.gbuffer.generation == LayerGeneration::reproject)
             pass.parameters.push_back({"gbuffer.guard_band", second});
     }
+    pass.kept = {"depth"};
     pass.create = [one_pass](const PassResources& resources) -> std::unique_ptr<Pass> {
         bool second_layer = false;
         for (const std::string& plane : gbuffer_outputs(resources.method, 1))

@@ -94,6 +94,14 @@ GLuint create_texture(GlContext& context, GLenum target) {
     return id;
 }
 
+// A name without a texture yet, as views want it.
+GLuint create_name(GlContext& context) {
+    context.make_current();
+    GLuint id = 0;
+    context.gl.GenTextures(1, &id);
+    return id;
+}
+
 std::size_t texture_bytes(GLenum format, int width, int height, int layers, int levels) {
     std::size_t texels = 0;
     for (int level = 0; level < levels; ++level) {
@@ -119,9 +127,31 @@ GlTexture::GlTexture(GlContext& context, GLenum target, GLenum format, int width
     } else {
         gl.TextureStorage3D(id(), levels, format, width, height, layers);
     }
-    set_filter(levels > 1 ? GL_NEAREST_MIPMAP_NEAREST : GL_NEAREST, GL_NEAREST);
-    set_wrap(GL_CLAMP_TO_EDGE, GL_CLAMP_TO_EDGE);
+    set_defaults();
     context.check(fmt::format("allocation of a {}x{}x{} texture", width, height, layers));
+}
+
+GlTexture::GlTexture(const GlTexture& array, GLenum format, int first_layer, int layers, int levels)
+    : GlObject(array.context(), Kind::texture, create_name(array.context()), 0),
+      target_(array.target()),
+      format_(format),
+      width_(array.width()),
+      height_(array.height()),
+      layers_(layers),
+      levels_(levels) {
+    context().gl.TextureView(id(), target_, array.id(), format, 0, static_cast<GLuint>(levels),
+                             static_cast<GLuint>(first_layer), static_cast<GLuint>(layers));
+    set_defaults();
+    context().check(fmt::format("view of {} layers of a {}x{}x{} texture", layers, width_, height_, array.layers()));
+}
+
+void GlTexture::set_defaults() {
+    set_filter(levels_ > 1 ? GL_NEAREST_MIPMAP_NEAREST : GL_NEAREST, GL_NEAREST);
+    set_wrap(GL_CLAMP_TO_EDGE, GL_CLAMP_TO_EDGE);
+}
+
+GlTexture GlTexture::view(const GlTexture& array, GLenum format, int first_layer, int layers, int levels) {
+    return GlTexture(array, format, first_layer, layers, levels);
 }
 
 GlTexture GlTexture::flat(GlContext& context, GLenum format, int width, int height, int levels) {

@@ -52,6 +52,9 @@ public:
     static GlTexture array(GlContext& context, GLenum format, int width, int height, int layers, int levels = 1);
     static GlTexture cube(GlContext& context, GLenum format, int size, int levels);
     static GlTexture cube_array(GlContext& context, GLenum format, int size, int cubes);
+    // Layers and the finest levels of an array texture, which must outlive it, as a texture of its own, read and
+    // written in a format of as many bytes. Takes no memory.
+    static GlTexture view(const GlTexture& array, GLenum format, int first_layer, int layers, int levels);
 
     GLenum target() const { return target_; }
     GLenum format() const { return format_; }
@@ -66,6 +69,8 @@ public:
 
 private:
     GlTexture(GlContext& context, GLenum target, GLenum format, int width, int height, int layers, int levels);
+    GlTexture(const GlTexture& array, GLenum format, int first_layer, int layers, int levels);
+    void set_defaults();
 
     GLenum target_ = 0, format_ = 0;
     int width_ = 0, height_ = 0, layers_ = 0, levels_ = 0;

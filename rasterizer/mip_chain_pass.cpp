@@ -30,15 +30,21 @@ MipChainPass::MipChainPass(const PassResources& resources, const std::string& pl
       chain_(chain_texture(resources, plane, chain)),
       layer_(layer),
       draw_(resources.context, resources.programs, "mip_chain.frag") {
-    for (int level = 1; level < chain_.levels(); ++level) {
+    // The texture may have more levels, of which nobody reads (plane_pool.h).
+    for (int level = 1; level <= coarsest_mip(chain_.width(), chain_.height()); ++level) {
         const GlAttachment target{&chain_, layer, level};
         coarser_levels_.emplace_back(resources.context, std::span(&target, 1), GlAttachment{}, "MIP chain");
     }
 }
 
 void MipChainPass::execute(const PassFrame&) {
-    plane_.context().gl.CopyImageSubData(plane_.id(), plane_.target(), 0, 0, 0, layer_, chain_.id(), chain_.target(), 0,
-                                         0, 0, layer_, plane_.width(), plane_.height(), 1);
+    const GladGLContext& gl = plane_.context().gl;
+    if (plane_.id() == chain_.id()) {
+        gl.TextureBarrier();  // the finest level is read while others are drawn into
+    } else {
+        gl.CopyImageSubData(plane_.id(), plane_.target(), 0, 0, 0, layer_, chain_.id(), chain_.target(), 0, 0, 0,
+                            layer_, plane_.width(), plane_.height(), 1);
+    }
     plane_.bind(0);
     draw_.program().set("layer", layer_);
     int level = 0;
@@ -57,6 +63,7 @@ PassDeclaration declare_mip_chain(const std::string& pass_name, const std::strin
     pass.create = [plane, chain, layer](const PassResources& resources) {
         return std::make_unique<MipChainPass>(resources, plane, chain, layer);
     };
+    pass.in_place = PassDeclaration::InPlace{.output = chain, .input = plane, .is_chain = true};
     return pass;
 }
 

@@ -27,7 +27,8 @@
 //
 // Layers are selected by a geometry shader that emits every triangle several times, or by the vertex shader of several
 // instances (GL_ARB_shader_viewport_layer_array). A layered target has the same number of layers everywhere: with
-// `delay` and `predict` the third one exists in every plane, though only its depth is used.
+// `delay` and `predict` the third one exists in every plane, though only its depth is used; later passes take its
+// memory (plane_pool.h).
 #pragma once
 
 #include <array>

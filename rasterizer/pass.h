@@ -89,6 +89,17 @@ struct PassDeclaration {
     std::string remark = {};                    // what is worth knowing when it runs ("3 point lights")
     std::vector<ParameterUse> parameters = {};  // with this scene: those that nothing in it is concerned with are not
                                                 // among them
+    // Planes, without a layer's prefix: of those that it reads or writes the ones whose contents must last until the
+    // next frame, and those that it makes for itself and that are of no use once it has run.
+    std::vector<std::string> kept = {}, scratch = {};
+    // The output that may overwrite an input, layer by layer, because the pass has read that before; or the input may
+    // be the finest level of the output. Both names without a layer's prefix.
+    struct InPlace {
+        std::string output, input;
+        bool is_chain = false;
+        bool operator==(const InPlace&) const = default;
+    };
+    std::optional<InPlace> in_place = {};
 };
 
 }  // namespace plumb

@@ -1,6 +1,7 @@
 #include "rasterizer/pass_plan.h"
 
 #include <algorithm>
+#include <array>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -29,6 +30,80 @@ void require_source(const std::vector<PassDeclaration>& declarations, const std:
     }
     throw MethodError(fmt::format("{} needs the plane '{}', which this method does not give{}; it gives: {}", reader,
                                   plane, disabled, fmt::join(available, ", ")));
+}
+
+bool touches(const std::vector<std::string>& planes, const std::string& base) {
+    return std::ranges::any_of(planes, [&](const std::string& plane) { return split_layer(plane).base == base; });
+}
+
+// Whether the output may overwrite the input: it must be of no use to anyone else, in this frame and the next.
+bool can_be_in_place(const PassDeclaration::InPlace& pair, const std::vector<PassDeclaration>& declarations,
+                     const std::vector<std::size_t>& order, const std::vector<std::string>& wanted,
+                     const PlaneLifetimes& lifetimes) {
+    if (!lifetimes.within_frame.contains(pair.input) || !lifetimes.within_frame.contains(pair.output)) return false;
+    if (touches(wanted, pair.input)) return false;
+    return std::ranges::none_of(order, [&](std::size_t index) {
+        const PassDeclaration& pass = declarations[index];
+        return touches(pass.inputs, pair.input) && pass.in_place != pair;
+    });
+}
+
+// The positions of the passes that make a plane, and that use each of its layers last.
+struct PlaneUse {
+    std::size_t first = 0;
+    std::array<std::size_t, most_layers> last{};
+};
+
+PlaneLifetimes find_lifetimes(const std::vector<PassDeclaration>& declarations, const std::vector<std::size_t>& order,
+                              const std::vector<std::string>& wanted) {
+    PlaneLifetimes lifetimes;
+    std::map<std::string, PlaneUse> uses;
+    const auto use = [&](const std::string& plane, std::size_t position) {
+        const auto [layer, base] = split_layer(plane);
+        const auto [found, is_new] = uses.try_emplace(base);
+        if (is_new) {  // layers that nobody names end with the pass that makes them
+            found->second.first = position;
+            found->second.last.fill(position);
+        }
+        found->second.last.at(static_cast<std::size_t>(layer)) = position;
+    };
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        const PassDeclaration& pass = declarations[order[i]];
+        for (const auto* planes : {&pass.inputs, &pass.outputs, &pass.scratch}) {
+            for (const std::string& plane : *planes) use(plane, i);
+        }
+    }
+    for (const auto& [plane, last] : uses) lifetimes.within_frame.insert(plane);
+    for (const std::size_t index : order) {
+        for (const std::string& plane : declarations[index].kept) lifetimes.within_frame.erase(plane);
+    }
+    const std::size_t read_back = order.size();
+    for (const std::string& plane : wanted) use(plane, read_back);
+    for (const std::size_t index : order) {
+        const std::optional<PassDeclaration::InPlace>& pair = declarations[index].in_place;
+        if (!pair || !can_be_in_place(*pair, declarations, order, wanted, lifetimes)) continue;
+        if (!lifetimes.in_place.emplace(pair->output, pair->input).second) continue;  // as another layer has it
+        if (pair->is_chain) lifetimes.chained.insert(pair->input);
+        for (std::size_t layer = 0; layer < most_layers; ++layer) {  // they end as one
+            std::size_t& end = uses.at(pair->input).last.at(layer);
+            end = std::max(end, uses.at(pair->output).last.at(layer));
+        }
+    }
+    lifetimes.ended_after.resize(order.size());
+    for (const auto& [plane, times] : uses) {
+        if (!lifetimes.within_frame.contains(plane)) continue;
+        // From the last layer on, as the first ones may be needed longer.
+        std::size_t end = times.first;
+        for (int layer = most_layers; layer >= 0; --layer) {
+            const bool is_whole = layer == 0;
+            const std::size_t of_one_more =
+                is_whole ? end : std::max(end, times.last.at(static_cast<std::size_t>(layer) - 1));
+            if ((is_whole || of_one_more > end) && end < read_back)
+                lifetimes.ended_after[end].push_back({plane, layer});
+            end = of_one_more;
+        }
+    }
+    return lifetimes;
 }
 
 }  // namespace
@@ -67,6 +142,7 @@ PassPlan plan_passes(const std::vector<PassDeclaration>& declarations, const std
         }
     }
     std::ranges::reverse(plan.order);
+    plan.lifetimes = find_lifetimes(declarations, plan.order, wanted);
     return plan;
 }
 

@@ -15,6 +15,7 @@ struct PassPlan {
     std::vector<std::size_t> order;           // indices of the declarations that run
     std::vector<PassDecision> decisions;      // one per declaration
     std::set<std::string, std::less<>> read;  // every plane that a running pass reads or that is wanted
+    PlaneLifetimes lifetimes;
 };
 
 // `declarations` are in the order of execution: a pass comes after those that it reads. Throws MethodError for a wanted

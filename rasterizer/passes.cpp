@@ -108,7 +108,7 @@ std::vector<PassDeclaration> declare_passes(const Scene& scene, const Method& me
     passes.push_back(declare_light_volumes(scene, lights, method, 0));
     passes.push_back(declare_light_volumes(scene, lights, method, 1));
     passes.push_back(declare_environment_maps(scene, method));
-    passes.push_back(declare_probe(scene, method));
+    passes.push_back(declare_probe(scene, lights, method));
     passes.push_back(declare_true_direct(method));
     passes.push_back(declare_direct_light(scene, lights, method, 0));
     passes.push_back(declare_direct_light(scene, lights, method, 1));

@@ -41,7 +41,8 @@ struct Pipeline::Implementation {
           declarations(declare_passes(scene, method, quantities)),
           plan(plan_passes(declarations, planes_to_make(quantities))),
           offsets(plan.read.contains(aliased_plane) ? jitter_offsets(method.antialias) : std::vector{glm::vec2(0.0f)}),
-          planes(context, width + 2 * method.gbuffer.guard_band, height + 2 * method.gbuffer.guard_band),
+          planes(context, width + 2 * method.gbuffer.guard_band, height + 2 * method.gbuffer.guard_band,
+                 plan.lifetimes),
           programs(context, gbuffer_defines(method)),
           view_uniforms(context),
           timer(context, plan.order.size()) {
@@ -51,10 +52,12 @@ struct Pipeline::Implementation {
                 if (!geometry) geometry.emplace(context, scene);
                 return *geometry;
             }};
-        for (const std::size_t index : plan.order) {
-            const PassDeclaration& declaration = declarations[index];
+        // In the order of execution, so that a pass takes the memory of planes that those before it have done with.
+        for (std::size_t i = 0; i < plan.order.size(); ++i) {
+            const PassDeclaration& declaration = declarations[plan.order[i]];
             passes.push_back(declaration.create(resources));
             context.check("making of " + declaration.name);
+            for (const PlaneLifetimes::Ended& ended : plan.lifetimes.ended_after[i]) planes.give_up(ended);
         }
     }
 
@@ -158,7 +161,7 @@ std::size_t Pipeline::gbuffer_bytes_per_pixel() const {
     std::size_t bytes = 0;
     for (const auto& [name, texture] : implementation_->planes.all()) {
         if (belongs_to_gbuffer(name))
-            bytes += bytes_per_texel(texture.format()) * static_cast<std::size_t>(texture.layers());
+            bytes += bytes_per_texel(texture->format()) * static_cast<std::size_t>(texture->layers());
     }
     return bytes;
 }

@@ -17,19 +17,59 @@ LayeredName split_layer(std::string_view plane) {
 }
 
 GlTexture& PlaneTextures::create(const std::string& name, GLenum format, int layers, int levels) {
-    return adopt(name, GlTexture::array(context_, format, width_, height_, layers, levels));
+    if (!lifetimes_.within_frame.contains(name))
+        return adopt(name, GlTexture::array(context_, format, width_, height_, layers, levels));
+    GlTexture& taken = take(name, format, layers, levels);
+    borrow(name, taken);
+    shared_.emplace(name, &taken);
+    return taken;
+}
+
+GlTexture& PlaneTextures::take(const std::string& name, GLenum format, int layers, int levels) {
+    const auto overwritten = lifetimes_.in_place.find(name);
+    if (overwritten == lifetimes_.in_place.end())
+        return pool_.take(format, layers, lifetimes_.chained.contains(name) ? pool_.most_levels() : levels);
+    GlTexture& texture = *shared_.at(overwritten->second);
+    if (texture.format() != format || texture.layers() != layers || texture.levels() < levels) {
+        throw GlError(
+            fmt::format("the plane '{}' cannot overwrite '{}', which has another shape", name, overwritten->second));
+    }
+    return texture;
 }
 
 GlTexture& PlaneTextures::adopt(const std::string& name, GlTexture texture) {
-    const auto [entry, added] = textures_.emplace(name, std::move(texture));
-    if (!added) throw GlError(fmt::format("two passes allocate the plane '{}'", name));
-    return entry->second;
+    borrow(name, texture);
+    GlTexture& kept = own_.emplace(name, std::move(texture)).first->second;
+    textures_[name] = &kept;
+    return kept;
+}
+
+void PlaneTextures::borrow(const std::string& name, const GlTexture& texture) {
+    if (!textures_.emplace(name, &texture).second)
+        throw GlError(fmt::format("two passes allocate the plane '{}'", name));
+}
+
+void PlaneTextures::give_up(const PlaneLifetimes::Ended& ended) {
+    const auto found = shared_.find(ended.plane);
+    if (found == shared_.end()) return;
+    pool_.give_back(*found->second, ended.first_layer);
+    if (ended.first_layer > 0) return;
+    shared_.erase(found);
+    given_up_.insert(ended.plane);
 }
 
 const PlaneHistory& PlaneTextures::create_history(const std::string& name, const std::string& before) {
-    const GlTexture& now = get(name);
-    create(before, now.format(), now.layers(), now.levels());
-    return histories_.emplace(name, PlaneHistory(textures_.at(name), textures_.at(before))).first->second;
+    const auto found = own_.find(name);
+    if (found == own_.end()) {
+        throw GlError(
+            fmt::format("the plane '{}' can have no history: it shares its memory with others, unless the pass "
+                        "that makes it declares it as kept",
+                        name));
+    }
+    GlTexture& now = found->second;
+    GlTexture& then =
+        adopt(before, GlTexture::array(context_, now.format(), width_, height_, now.layers(), now.levels()));
+    return histories_.emplace(name, PlaneHistory(now, then)).first->second;
 }
 
 const PlaneHistory* PlaneTextures::history_of(std::string_view name) const {
@@ -39,12 +79,18 @@ const PlaneHistory* PlaneTextures::history_of(std::string_view name) const {
 
 const GlTexture* PlaneTextures::find(std::string_view name) const {
     const auto found = textures_.find(name);
-    return found == textures_.end() ? nullptr : &found->second;
+    if (found == textures_.end()) return nullptr;
+    if (given_up_.contains(name)) {
+        throw GlError(
+            fmt::format("the plane '{}' was given up after the last pass that declares it; let the one that "
+                        "reads it now name it among its inputs",
+                        name));
+    }
+    return found->second;
 }
 
 const GlTexture& PlaneTextures::get(std::string_view name) const {
-    const auto found = textures_.find(name);
-    if (found != textures_.end()) return found->second;
+    if (const GlTexture* found = find(name)) return *found;
     std::string names;
     for (const auto& [known, texture] : textures_) names += names.empty() ? known : ", " + known;
     throw GlError(

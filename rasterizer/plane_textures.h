@@ -5,11 +5,16 @@
 // infinite the other planes mean nothing.
 #pragma once
 
+#include <list>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "rasterizer/plane_history.h"
+#include "rasterizer/plane_lifetimes.h"
+#include "rasterizer/plane_pool.h"
 
 namespace plumb {
 
@@ -25,7 +30,13 @@ LayeredName split_layer(std::string_view plane);
 
 class PlaneTextures {
 public:
-    PlaneTextures(GlContext& context, int width, int height) : context_(context), width_(width), height_(height) {}
+    // Planes whose contents matter only within a frame share their memory (plane_pool.h); all others have theirs alone.
+    PlaneTextures(GlContext& context, int width, int height, PlaneLifetimes lifetimes = {})
+        : context_(context),
+          width_(width),
+          height_(height),
+          lifetimes_(std::move(lifetimes)),
+          pool_(context, width, height) {}
 
     // Size of every plane: the view's with its guard band.
     int width() const { return width_; }
@@ -35,22 +46,36 @@ public:
     GlTexture& create(const std::string& name, GLenum format, int layers, int levels = 1);
     // Adds a texture of another shape (a shadow map) under a name.
     GlTexture& adopt(const std::string& name, GlTexture texture);
-    // Allocates what the plane `name`, which there is, held in the frame before, under the name `before`.
+    // Adds a texture that belongs to others, who outlive this.
+    void borrow(const std::string& name, const GlTexture& texture);
+    // The passes made from here on do not know the plane or its last layers: where it shares its memory, they may take
+    // that. Who looks up a plane of which no layer is left gets a GlError.
+    void give_up(const PlaneLifetimes::Ended& ended);
+    // Allocates what the plane `name`, which there is, held in the frame before, under the name `before`. Throws
+    // GlError where the plane shares its memory.
     const PlaneHistory& create_history(const std::string& name, const std::string& before);
     // Null where the plane has none.
     const PlaneHistory* history_of(std::string_view name) const;
-    bool has(std::string_view name) const { return textures_.find(name) != textures_.end(); }
+    bool has(std::string_view name) const { return find(name) != nullptr; }
     // Null where there is none.
     const GlTexture* find(std::string_view name) const;
     // Throws GlError that lists the planes there are.
     const GlTexture& get(std::string_view name) const;
-    // By name.
-    const std::map<std::string, GlTexture, std::less<>>& all() const { return textures_; }
+    // By name, also those that were given up.
+    const std::map<std::string, const GlTexture*, std::less<>>& all() const { return textures_; }
 
 private:
+    // Of memory that is shared.
+    GlTexture& take(const std::string& name, GLenum format, int layers, int levels);
+
     GlContext& context_;
     int width_, height_;
-    std::map<std::string, GlTexture, std::less<>> textures_;
+    PlaneLifetimes lifetimes_;
+    PlanePool pool_;
+    std::map<std::string, GlTexture*, std::less<>> shared_;  // now, of the pool
+    std::map<std::string, GlTexture, std::less<>> own_;
+    std::map<std::string, const GlTexture*, std::less<>> textures_;
+    std::set<std::string, std::less<>> given_up_;
     std::map<std::string, PlaneHistory, std::less<>> histories_;
 };
 

@@ -12,6 +12,7 @@
 #include "rasterizer/pass_plan.h"
 #include "rasterizer/passes.h"
 #include "rasterizer/scene_reach.h"
+#include "rasterizer/shadow_pass.h"
 #include "rasterizer/view_uniforms.h"
 
 namespace plumb {
@@ -45,6 +46,9 @@ Method method_of_probe_faces(const Method& method) {
     faces.gbuffer.layers = faces.ao.layers = 1;
     faces.direct.source = SourceOfStage::method;
     faces.radiosity.enabled = faces.reflections.enabled = false;
+    // Every face is a first frame, of which these leave each bit as it is; they only want a second layer, and memory.
+    faces.ao.temporal = {};
+    faces.antialias = {};
     faces.composite = {};
     return faces;
 }
@@ -61,9 +65,11 @@ public:
         plan_ = plan_passes(declarations, {"total"});
         const PassResources resources{context_, outer.scene,    method_,    outer.quantities,
                                       planes_,  outer.programs, plan_.read, outer.geometry};
+        // Shadow maps do not depend on the view.
+        const std::vector<std::string> shadows = shadow_textures(LightSet(outer.scene, method_.direct));
+        for (const std::string& texture : shadows) planes_.borrow(texture, outer.planes.get(texture));
         for (const std::size_t index : plan_.order) {
-            if (declarations[index].name == "shadows") shadows_ = passes_.size();
-            passes_.push_back(declarations[index].create(resources));
+            if (declarations[index].outputs != shadows) passes_.push_back(declarations[index].create(resources));
         }
         const ProbeSettings& probe = outer.method.probe;
         const glm::vec3 position(probe.x, probe.y, probe.z);
@@ -77,10 +83,9 @@ public:
     void draw_face(int face, const GlFramebuffer& target, const std::optional<double>& time) const {
         const View& view = views_[static_cast<std::size_t>(face)];
         view_uniforms_.update(view, view, 0);
-        for (std::size_t i = 0; i < passes_.size(); ++i) {
-            if (face > 0 && i == shadows_) continue;  // they do not depend on the view
+        for (const std::unique_ptr<Pass>& pass : passes_) {
             view_uniforms_.bind();
-            passes_[i]->execute({.view = view, .previous = view, .time = time});
+            pass->execute({.view = view, .previous = view, .time = time});
         }
         // Both have their lower row first.
         const int size = planes_.width();
@@ -95,7 +100,6 @@ private:
     ViewUniforms view_uniforms_;
     PassPlan plan_;
     std::vector<std::unique_ptr<Pass>> passes_;
-    std::optional<std::size_t> shadows_;  // which of them draws the shadow maps
     std::vector<View> views_;
     GlFramebuffer source_;
 };
@@ -114,10 +118,11 @@ void ProbePass::execute(const PassFrame& frame) {
     if (!every_frame_) capture_.reset();
 }
 
-PassDeclaration declare_probe(const Scene& scene, const Method& method) {
+PassDeclaration declare_probe(const Scene& scene, const LightSet& lights, const Method& method) {
     const ProbeSettings& probe = method.probe;
     PassDeclaration pass;
     pass.name = "probe";
+    pass.inputs = shadow_textures(lights);
     pass.outputs = RadianceMaps::outputs("probe");
     for (const char* name : {"probe.x", "probe.y", "probe.z", "probe.size"}) pass.parameters.push_back({name});
     if (std::ranges::any_of(scene.instances, &Instance::moves)) pass.parameters.push_back({"probe.every_frame"});

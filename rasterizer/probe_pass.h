@@ -2,9 +2,9 @@
 // `probe.radiance`, `probe.irradiance`, `probe.prefiltered`.
 //
 // Six square views of 90 degrees from ProbeSettings are rendered by this very rasterizer, with the method's own passes:
-// emission, direct light with its shadows, the environment with its ambient visibility; one layer, without radiosity
-// and reflections. Captured once, in the first frame, and what was needed for it is let go; every_frame keeps it and
-// captures anew.
+// emission, direct light with the view's shadow maps, the environment with its ambient visibility; one layer, without
+// radiosity and reflections. Captured once, in the first frame, and what was needed for it is let go; every_frame keeps
+// it and captures anew.
 //   Good for: light from outside the view and from behind it, where a screen-space method has nothing to read. Bad for:
 //   points far from the probe, which see other things, and near ones that something hides from it; whatever only
 //   indirect light reaches is black in the probe; ambient visibility has seams where two faces meet.
@@ -12,6 +12,7 @@
 
 #include <memory>
 
+#include "rasterizer/light_set.h"
 #include "rasterizer/radiance_maps.h"
 
 namespace plumb {
@@ -33,6 +34,6 @@ private:
 // What its views are rendered with, to show `total`.
 Method method_of_probe_faces(const Method& method);
 
-PassDeclaration declare_probe(const Scene& scene, const Method& method);
+PassDeclaration declare_probe(const Scene& scene, const LightSet& lights, const Method& method);
 
 }  // namespace plumb

@@ -105,6 +105,7 @@ PassDeclaration declare_radiosity_carry(const Scene& scene, const Method& method
         for (const char* name : {"radiosity.saturated_boost", "radiosity.unsaturated_boost"})
             pass.parameters.push_back({name});
     }
+    pass.kept = {radiosity_plane(1)};  // what this frame's passes give, the next frame carries on
     pass.create = [](const PassResources& resources) { return std::make_unique<RadiosityCarryPass>(resources); };
     pass.remark =
         fmt::format("what was {} m off is lost, {} of the rest taken away", settings.carry_to, settings.damping);

@@ -85,6 +85,7 @@ PassDeclaration declare_temporal_antialias(const Scene& scene, const Method& met
     for (std::string& plane : Reprojection::inputs(scene, 0)) pass.inputs.push_back(std::move(plane));
     pass.outputs = {resolved_plane};
     pass.parameters = {{"antialias."}};
+    pass.kept = pass.outputs;
     pass.create = [](const PassResources& resources) { return std::make_unique<TemporalAntialiasPass>(resources); };
     if (!method.antialias.temporal) pass.disabled = "antialias.temporal is false";
     pass.remark = fmt::format("{} offsets, alpha {}", method.antialias.jitter_length, method.antialias.alpha);

@@ -115,9 +115,11 @@ PassDeclaration declare_temporal_filter(const Scene& scene, const TemporalFilter
     PassDeclaration pass{.name = request.name,
                          .inputs = {prefix + request.input, prefix + "depth"},
                          .outputs = {prefix + request.output},
-                         .create = [request](const PassResources& resources) {
-                             return std::make_unique<TemporalFilterPass>(resources, request);
-                         }};
+                         .create =
+                             [request](const PassResources& resources) {
+                                 return std::make_unique<TemporalFilterPass>(resources, request);
+                             },
+                         .kept = {request.output}};
     if (reads_normals(request.settings)) pass.inputs.push_back(prefix + "normal");
     // The second layer's own, or both.
     for (int layer = 0; layer < 2; ++layer) {

@@ -81,6 +81,7 @@ PassDeclaration declare_true_gbuffer(const Method& method) {
     // The truth's layers are that far apart.
     const std::vector<std::string> behind(pass.outputs.begin() + first_layer_outputs, pass.outputs.end());
     if (!behind.empty()) pass.parameters.push_back({"gbuffer.minimum_separation", behind});
+    pass.kept = {"depth"};
     pass.create = [planes = pass.outputs](const PassResources& resources) {
         return std::make_unique<TruthPass>(resources, planes);
     };
