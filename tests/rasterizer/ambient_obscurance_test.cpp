@@ -5,8 +5,10 @@
 
 #include "ambient_obscurance_counterpart.h"
 #include "gl_test.h"
+#include "random_views.h"
 #include "rasterizer/gl_error.h"
 #include "rasterizer/pipeline.h"
+#include "rasterizer/scene_reach.h"
 #include "scenes/builtin.h"
 #include "screen_space_run.h"
 
@@ -135,6 +137,38 @@ TEST_P(AmbientObscuranceTest, AgreesWithItsCounterpartInTheCornellBoxThroughTheP
         Pipeline pipeline(context(), scene, unblurred(settings), quantities, view.width(), view.height());
         const Frame frame = pipeline.render(view).frame;
         EXPECT_LT(expect_agreement(layers_of_frame(view, frame), settings, quantities, frame.plane("ao")), 0.02);
+    }
+}
+
+// Every case with cameras and image shapes of its own.
+TEST_P(AmbientObscuranceTest, AgreesWithItsCounterpartOnNoiseInRandomViews) {
+    unsigned seed = 100;
+    for (const Case& c : cases) {
+        const RandomView random = random_view(++seed, anywhere, 1200);
+        SCOPED_TRACE(testing::Message() << c.name << ", " << random);
+        EXPECT_LT(expect_agreement(context(), counterpart::random_layers(random.view, seed), c.settings,
+                                   ambient_visibility_within(0.8f, c.falloff)),
+                  0.05);
+    }
+}
+
+TEST_P(AmbientObscuranceTest, AgreesWithItsCounterpartInRandomViewsThroughThePipeline) {
+    unsigned seed = 200;
+    std::size_t turn = 0;
+    for (const Scene& scene : {make_cornell(), make_clutter()}) {
+        for (const RandomView& random : random_views(seed, 4, bounds_over_time(scene), 1200)) {
+            const Case& c = cases[(3 * turn++) % cases.size()];
+            SCOPED_TRACE(testing::Message() << c.name << ", " << scene.name << ", " << random);
+            Quantities quantities = ambient_visibility_within(0.3f, c.falloff);
+            quantities.planes.insert(quantities.planes.end(), planes_of_layers.begin(), planes_of_layers.end());
+            Method method = unblurred(c.settings);
+            method.direct.emitters = method.direct.shadow.lamps = false;  // light is of no concern
+            Pipeline pipeline(context(), scene, method, quantities, random.view.width(), random.view.height());
+            const Frame frame = pipeline.render(random.view).frame;
+            EXPECT_LT(expect_agreement(layers_of_frame(random.view, frame), c.settings, quantities, frame.plane("ao")),
+                      0.05);
+        }
+        seed += 10;
     }
 }
 

@@ -7,8 +7,10 @@
 #include "bilateral_blur_counterpart.h"
 #include "blur_run.h"
 #include "gl_test.h"
+#include "random_views.h"
 #include "rasterizer/gl_error.h"
 #include "rasterizer/pipeline.h"
+#include "rasterizer/scene_reach.h"
 #include "scenes/builtin.h"
 
 namespace plumb {
@@ -92,6 +94,41 @@ TEST_P(BilateralBlurTest, PointsExemptFromThePlaneAreBlurredAcrossContacts) {
     };
     EXPECT_EQ(leaked(0.0f), 0.0);
     EXPECT_GT(leaked(0.02f), 1.0);
+}
+
+TEST_P(BilateralBlurTest, AgreesWithItsCounterpartInRandomViewsThroughThePipeline) {
+    const std::vector<BilateralBlurSettings> settings_in_turn = {
+        {}, {.radius = 7, .step = 3, .monotonic = false}, RadiositySettings{}.blur, {.depth_key_bits = 16}};
+    constexpr float radius = 0.5f;
+    unsigned seed = 500;
+    for (const Scene& scene : {make_cornell(), make_clutter()}) {
+        std::size_t turn = 0;
+        for (const RandomView& random : random_views(seed, 4, bounds_over_time(scene), 1200)) {
+            SCOPED_TRACE(testing::Message() << scene.name << ", " << random);
+            Method method;
+            method.ao.blur = settings_in_turn[turn++];
+            method.direct.emitters = method.direct.shadow.lamps = false;  // light is of no concern
+            Quantities quantities{.planes = {"ao", "ao.unfiltered"}, .ao_radius = radius};
+            quantities.planes.insert(quantities.planes.end(), planes_of_layers.begin(), planes_of_layers.end());
+            Pipeline pipeline(context(), scene, method, quantities, random.view.width(), random.view.height());
+            const Frame frame = pipeline.render(random.view).frame;
+            const counterpart::Layers layers = layers_of_frame(random.view, frame);
+            const Image rows = counterpart::blurred(layers, method.ao.blur, radius, frame.plane("ao.unfiltered"), 1, 0);
+            const Image expected = counterpart::blurred(layers, method.ao.blur, radius, rows, 0, 1);
+            int wrong = 0;
+            for (int y = 0; y < random.view.height(); ++y) {
+                for (int x = 0; x < random.view.width(); ++x) {
+                    if (layers.depth[0].at(x, y) == 0.0f) continue;  // nothing there, which means nothing
+                    // As above; the values differ by at most 1.
+                    if (std::abs(frame.plane("ao").at(x, y) - expected.at(x, y)) < 5e-4f || ++wrong > 4) continue;
+                    ADD_FAILURE() << "pixel (" << x << ", " << y << "): " << frame.plane("ao").at(x, y) << ", expected "
+                                  << expected.at(x, y);
+                }
+            }
+            EXPECT_EQ(wrong, 0);
+        }
+        seed += 10;
+    }
 }
 
 TEST_P(BilateralBlurTest, KeysOfFewBitsAreStoredBesideTheDepth) {

@@ -7,8 +7,10 @@
 
 #include "gl_test.h"
 #include "radiosity_agreement.h"
+#include "random_views.h"
 #include "rasterizer/gl_error.h"
 #include "rasterizer/pipeline.h"
+#include "rasterizer/scene_reach.h"
 #include "scenes/builtin.h"
 
 namespace plumb {
@@ -116,6 +118,39 @@ TEST_P(RadiosityTest, AgreesWithItsCounterpartInTheCornellBoxThroughThePipeline)
         EXPECT_LT(expect_agreement(layers_of_frame(view, frame), settings, frame.plane("irradiance"),
                                    frame.plane("confidence")),
                   0.05);
+    }
+}
+
+// Every case with cameras and image shapes of its own.
+TEST_P(RadiosityTest, AgreesWithItsCounterpartOnNoiseInRandomViews) {
+    unsigned seed = 300;
+    for (const Case& c : cases) {
+        const RandomView random = random_view(++seed, anywhere, 1200);
+        SCOPED_TRACE(testing::Message() << c.name << ", " << random);
+        EXPECT_LT(expect_agreement(context(), counterpart::random_layers(random.view, seed), c.settings), 0.1);
+    }
+}
+
+TEST_P(RadiosityTest, AgreesWithItsCounterpartInRandomViewsThroughThePipeline) {
+    unsigned seed = 400;
+    std::size_t turn = 0;
+    for (const Scene& scene : {make_cornell(), make_clutter()}) {
+        for (const RandomView& random : random_views(seed, 4, bounds_over_time(scene), 1200)) {
+            const Case& c = cases[(3 * turn++) % cases.size()];
+            RadiositySettings settings = c.settings;
+            settings.test_tap_normal = true;  // else taps in the pixel's own plane decide by rounding
+            SCOPED_TRACE(testing::Message() << c.name << ", " << scene.name << ", " << random);
+            Quantities quantities = all_planes;
+            quantities.planes.insert(quantities.planes.end(), planes_of_layers.begin(), planes_of_layers.end());
+            Method method = unblurred(settings);
+            method.direct.shadow.cube_size = method.direct.shadow.emitter_size = 64;
+            Pipeline pipeline(context(), scene, method, quantities, random.view.width(), random.view.height());
+            const Frame frame = pipeline.render(random.view).frame;
+            EXPECT_LT(expect_agreement(layers_of_frame(random.view, frame), settings, frame.plane("irradiance"),
+                                       frame.plane("confidence")),
+                      0.1);
+        }
+        seed += 10;
     }
 }
 

@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include "gl_test.h"
+#include "random_views.h"
 #include "rasterizer/gl_error.h"
 #include "rasterizer/pipeline.h"
+#include "rasterizer/scene_reach.h"
 #include "reflection_run.h"
 #include "scenes/builtin.h"
 #include "screen_space_run.h"
@@ -134,6 +136,72 @@ TEST_P(ReflectionsTest, AgreesWithItsCounterpartOnNoise) {
         EXPECT_GT(count.hits, 100);
         EXPECT_GT(count.second_layer_hits, c.settings.layers == 2 ? 10 : -1);
     }
+}
+
+// Every case with cameras and image shapes of its own.
+TEST_P(ReflectionsTest, AgreesWithItsCounterpartOnNoiseInRandomViews) {
+    unsigned seed = 600;
+    for (const Case& c : cases) {
+        const RandomView random = random_view(++seed, anywhere, 600);
+        SCOPED_TRACE(testing::Message() << c.name << ", " << random);
+        const counterpart::Gloss gloss = even_gloss(random.view, {0.9f, 0.5f, 0.2f}, 1.0f, c.roughness);
+        const Count count = expect_agreement(context(), counterpart::random_layers(random.view, seed), gloss,
+                                             c.settings, reflection_alone, {0.3f, 0.6f, 0.9f});
+        EXPECT_LT(count.ambiguous_share(), 0.3);
+    }
+}
+
+// Everything in the scene reflects, of one roughness.
+Scene polished(Scene scene, float roughness) {
+    for (Material& material : scene.materials) {
+        material.dielectric_reflectance = 0.3f;
+        material.roughness = roughness;
+    }
+    return scene;
+}
+
+TEST_P(ReflectionsTest, AgreesWithItsCounterpartInRandomViewsThroughThePipeline) {
+    unsigned seed = 700;
+    std::size_t turn = 0;
+    int hits = 0;
+    std::vector<std::string> names = planes_of_layers;
+    for (const char* plane : {"reflection", "specular", "roughness", "emission", "layer2.emission"})
+        names.emplace_back(plane);
+    for (const Scene& matt : {make_cornell(), make_clutter()}) {
+        for (const RandomView& random : random_views(seed, 4, bounds_over_time(matt), 800)) {
+            const Case& c = cases[(5 * turn++) % cases.size()];
+            SCOPED_TRACE(testing::Message() << c.name << ", " << matt.name << ", " << random);
+            const Scene scene = polished(matt, c.roughness);
+            ReflectionSettings settings = c.settings;
+            settings.fallback = ReflectionFallback::none;
+            settings.lamps = false;
+            Method method = method_of(settings);
+            method.radiosity.enabled = false;
+            method.direct.shadow.cube_size = method.direct.shadow.emitter_size = 64;
+            Quantities quantities{.planes = names};
+            quantities.bounces = 1;  // what hits is direct light and emission
+            Pipeline pipeline(context(), scene, method, quantities, random.view.width(), random.view.height());
+            const Frame frame = pipeline.render(random.view).frame;
+            counterpart::Layers layers = layers_of_frame(random.view, frame);
+            float brightest = 1.0f;
+            for (std::size_t layer = 0; layer < 2; ++layer) {
+                auto sum = layers.radiance[layer].values();
+                const auto emitted = frame.plane(layer == 0 ? "emission" : "layer2.emission").values();
+                for (std::size_t i = 0; i < sum.size(); ++i) brightest = std::max(brightest, sum[i] += emitted[i]);
+            }
+            const counterpart::Gloss gloss{frame.plane("specular"),
+                                           Image(random.view.width(), random.view.height(), 1, 1.0f),
+                                           frame.plane("roughness")};
+            // As for noise (which is at most 1), relative to the brightest.
+            const double tolerance = settings.roughness == samples ? 1e-4 : 1.5e-3;
+            const Count count = expect_agreement(layers, gloss, request_of(settings, quantities),
+                                                 frame.plane("reflection"), brightest * tolerance);
+            EXPECT_LT(count.ambiguous_share(), 0.3);
+            hits += count.hits;
+        }
+        seed += 10;
+    }
+    EXPECT_GT(hits, 500);
 }
 
 // A floor, a wall of many colours behind it and, between the two, a low table in front of which hangs a board.

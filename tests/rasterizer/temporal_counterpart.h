@@ -106,18 +106,26 @@ inline double acceptance(const TemporalFilterSettings& settings, double distance
     return 1.0 - t * t * (3.0 - 2.0 * t);
 }
 
+// By how much float arithmetic may be off.
+struct Doubt {
+    glm::dvec2 place{0.0};   // pixels, of where a point was
+    glm::dvec3 normal{0.0};  // of its normal
+    double depth = 0.0;      // of a distance, as a share of the depth
+};
+
 // What the filter makes of `this_frame` at a pixel, `history` being its result of the frame before; both of `layer`.
 inline Accumulated accumulate(const RenderedFrame& now, const RenderedFrame& before, const Image& this_frame,
-                              const Image& history, const TemporalFilterSettings& settings, int x, int y,
-                              int layer = 0) {
+                              const Image& history, const TemporalFilterSettings& settings, int x, int y, int layer = 0,
+                              const Doubt& doubt = {}) {
     Accumulated result{this_frame.at(x, y), 0.0};
     const std::array<std::string, 2> prefixes{"", "layer2."};
     const std::string& prefix = prefixes.at(static_cast<std::size_t>(layer));
     const std::optional<SurfacePoint> point = surface_point(now, x, y, prefix);
     if (!point) return result;
-    const glm::dvec3 place = seen_at(before.view, point->before);
+    const glm::dvec3 place = seen_at(before.view, point->before) + glm::dvec3(doubt.place, 0.0);
     if (place.z <= 0.0) return result;
-    const glm::dvec3 normal = normal_before(now, *point, vector_of(now.planes.plane(prefix + "normal"), x, y));
+    const glm::dvec3 normal =
+        glm::normalize(normal_before(now, *point, vector_of(now.planes.plane(prefix + "normal"), x, y)) + doubt.normal);
     const glm::dvec3 from_eye = point->before - eye_of(before.view);
     const auto nearest_to = [&](const glm::dvec3& ray, double expected, double column, double row) {
         double distance = std::numeric_limits<double>::infinity();
@@ -134,7 +142,7 @@ inline Accumulated accumulate(const RenderedFrame& now, const RenderedFrame& bef
     if (settings.rejection == HistoryRejection::mara2016) {
         const double column = std::floor(place.x), row = std::floor(place.y);
         if (column < 0 || row < 0 || column >= this_frame.width() || row >= this_frame.height()) return result;
-        from_point = nearest_to(ray_through(before.view, place.x, place.y), place.z, column, row);
+        from_point = nearest_to(ray_through(before.view, place.x, place.y), place.z * (1.0 + doubt.depth), column, row);
     }
     const double left = std::floor(place.x - 0.5), top = std::floor(place.y - 0.5);
     for (const double column : {left, left + 1.0}) {
@@ -142,7 +150,7 @@ inline Accumulated accumulate(const RenderedFrame& now, const RenderedFrame& bef
             if (column < 0 || row < 0 || column >= this_frame.width() || row >= this_frame.height()) continue;
             const double share = (1.0 - std::abs(place.x - 0.5 - column)) * (1.0 - std::abs(place.y - 0.5 - row));
             const glm::dvec3 ray = ray_through(before.view, column + 0.5, row + 0.5);
-            double expected = glm::dot(normal, from_eye) / glm::dot(normal, ray);
+            double expected = glm::dot(normal, from_eye) / glm::dot(normal, ray) * (1.0 + doubt.depth);
             if (!(expected > 0.5 * place.z && expected < 2.0 * place.z)) expected = place.z;
             const double distance =
                 settings.rejection == HistoryRejection::mara2016 ? from_point : nearest_to(ray, expected, column, row);
@@ -154,6 +162,44 @@ inline Accumulated accumulate(const RenderedFrame& now, const RenderedFrame& bef
         }
     }
     return result;
+}
+
+// The least and the most that rounding may make of it.
+struct AccumulatedRange {
+    Accumulated least, most;
+    bool holds(double value, double weight, double rounding) const {
+        return value >= least.value - rounding && value <= most.value + rounding && weight >= least.weight - rounding &&
+               weight <= most.weight + rounding;
+    }
+};
+
+inline AccumulatedRange accumulated_range(const RenderedFrame& now, const RenderedFrame& before,
+                                          const Image& this_frame, const Image& history,
+                                          const TemporalFilterSettings& settings, int x, int y, int layer = 0) {
+    const Accumulated exact = accumulate(now, before, this_frame, history, settings, x, y, layer);
+    AccumulatedRange range{exact, exact};
+    const std::string prefix = layer == 0 ? "" : "layer2.";
+    const std::optional<SurfacePoint> point = surface_point(now, x, y, prefix);
+    if (!point) return range;
+    // Positions some metres away are good to 1.5e-6 m in float, and a metre away there are 100 to 200 pixels to a
+    // metre.
+    constexpr double of_place = 3e-4, of_depth = 1e-6;
+    // The normal of then, of what has turned, has 15 and 16 bits (code_of_normal); else it is read from the same bits.
+    const double of_normal = point->now == point->before ? 1e-6 : 6e-5;
+    for (const double dx : {-of_place, of_place}) {
+        for (const double dy : {-of_place, of_place}) {
+            for (int axis = 0; axis < 6; ++axis) {
+                Doubt doubt{.place = {dx, dy}, .depth = axis < 3 ? of_depth : -of_depth};
+                doubt.normal[axis % 3] = axis < 3 ? of_normal : -of_normal;
+                const Accumulated other = accumulate(now, before, this_frame, history, settings, x, y, layer, doubt);
+                range.least.value = std::min(range.least.value, other.value);
+                range.least.weight = std::min(range.least.weight, other.weight);
+                range.most.value = std::max(range.most.value, other.value);
+                range.most.weight = std::max(range.most.weight, other.weight);
+            }
+        }
+    }
+    return range;
 }
 
 // An image that temporal anti-aliasing has resolved, and over how many frames each pixel is averaged.
@@ -187,7 +233,7 @@ inline glm::dvec3 looked_up(HistoryLookup lookup, const Image& image, const glm:
 
 // Resolves a frame; `before` and `history` are null on the first.
 inline Resolved resolve(const RenderedFrame& now, const RenderedFrame* before, const Resolved* history,
-                        const AntialiasSettings& settings) {
+                        const AntialiasSettings& settings, const glm::dvec2& doubt_of_place = glm::dvec2(0.0)) {
     const Image &aliased = now.planes.plane("total.aliased"), &depth = now.planes.plane("depth");
     const int width = aliased.width(), height = aliased.height();
     Resolved result{aliased, Image(width, height, 1, 1.0f)};
@@ -214,7 +260,7 @@ inline Resolved resolve(const RenderedFrame& now, const RenderedFrame* before, c
             if (seen.z <= 0.0) continue;
             const glm::dvec2 then = glm::dvec2(seen) + glm::dvec2(before->view.offset());
             const glm::dvec2 here = glm::dvec2(surface) + 0.5 + glm::dvec2(now.view.offset());
-            const glm::dvec2 place = glm::dvec2(x, y) + 0.5 + then - here;
+            const glm::dvec2 place = glm::dvec2(x, y) + 0.5 + then - here + doubt_of_place;
             if (place.x < 0.0 || place.y < 0.0 || place.x > width || place.y > height) continue;
             glm::dvec3 kept = looked_up(settings.lookup, history->colour, place);
             if (settings.clamp) kept = glm::clamp(kept, least, greatest);
@@ -226,6 +272,28 @@ inline Resolved resolve(const RenderedFrame& now, const RenderedFrame* before, c
         }
     }
     return result;
+}
+
+// The least and the most that rounding may make of it, and the exact result.
+struct ResolvedRange {
+    Resolved exact;
+    Image least, most;
+};
+
+inline ResolvedRange resolved_range(const RenderedFrame& now, const RenderedFrame* before, const Resolved* history,
+                                    const AntialiasSettings& settings) {
+    ResolvedRange range{resolve(now, before, history, settings), {}, {}};
+    range.least = range.most = range.exact.colour;
+    constexpr double of_place = 3e-4;  // as in accumulated_range()
+    for (const glm::dvec2& doubt : {glm::dvec2(-of_place, -of_place), glm::dvec2(-of_place, of_place),
+                                    glm::dvec2(of_place, -of_place), glm::dvec2(of_place, of_place)}) {
+        const Resolved other = resolve(now, before, history, settings, doubt);
+        for (std::size_t i = 0; i < other.colour.values().size(); ++i) {
+            range.least.values()[i] = std::min(range.least.values()[i], other.colour.values()[i]);
+            range.most.values()[i] = std::max(range.most.values()[i], other.colour.values()[i]);
+        }
+    }
+    return range;
 }
 
 }  // namespace plumb::counterpart

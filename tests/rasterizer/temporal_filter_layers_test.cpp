@@ -113,20 +113,19 @@ TEST_P(TemporalFilterLayersTest, TheSecondLayersLightAgreesWithItsCounterpart) {
                     if (std::isinf(now.planes.plane("layer2.depth").at(x, y))) continue;
                     ++surfaces;
                     // The red channel stands for all.
-                    counterpart::Accumulated expected{of_frame.at(x, y), 0.0};
+                    counterpart::AccumulatedRange expected{{of_frame.at(x, y), 0.0}, {of_frame.at(x, y), 0.0}};
                     if (before) {
-                        expected = accumulate(now, *before, of_frame, before->planes.plane("layer2.radiosity"),
-                                              settings, x, y, 1);
+                        expected = accumulated_range(now, *before, of_frame, before->planes.plane("layer2.radiosity"),
+                                                     settings, x, y, 1);
                     }
                     with_history += weight.at(x, y) > 0.0f;
-                    // As for the first layer (temporal_filter_test.cpp); half floats of light besides.
-                    const double scale = std::max(1.0, std::abs(expected.value));
-                    wrong += !(std::abs(result.at(x, y) - expected.value) < 0.02 * scale) ||
-                             !(std::abs(weight.at(x, y) - expected.weight) < 0.02);
+                    // As for the first layer (temporal_filter_test.cpp).
+                    wrong += !expected.holds(result.at(x, y), weight.at(x, y),
+                                             1e-5 * std::max(1.0f, std::abs(result.at(x, y))));
                 }
             }
             EXPECT_GT(surfaces, 1000);
-            EXPECT_LE(wrong, surfaces / 300) << "frame " << i << ": " << wrong << " of " << surfaces;
+            EXPECT_EQ(wrong, 0) << "frame " << i << ", of " << surfaces;
             if (i > 0) {
                 EXPECT_GT(with_history, surfaces / 3) << "frame " << i;
             }
