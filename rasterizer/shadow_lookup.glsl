@@ -24,7 +24,13 @@ float cube_visibility(samplerCubeArrayShadow maps, float size, int cube, float d
     float along_axis = max(distance.x, max(distance.y, distance.z));
     vec3 n = abs(normal);
     float n_axis = distance.x == along_axis ? n.x : distance.y == along_axis ? n.y : n.z;
-    vec3 p = lifted(from_light, normal, 2.0 * along_axis / size, n.x + n.y + n.z - n_axis);
+    float slope = n.x + n.y + n.z - n_axis;
+#ifdef LINEAR_CUBES
+    // From texel to texel the distance to a point of the surface grows as its direction leaves the face's axis, too.
+    float across = distance.x + distance.y + distance.z - along_axis;
+    slope += abs(dot(normal, from_light)) * across / dot(from_light, from_light);
+#endif
+    vec3 p = lifted(from_light, normal, 2.0 * along_axis / size, slope);
 #ifdef LINEAR_CUBES
     return texture(maps, vec4(p, float(cube)), 1.0 - length(p) / depth_scale);
 #else
