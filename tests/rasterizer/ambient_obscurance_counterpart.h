@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "frames/quantities.h"
+#include "rasterizer/ambient_obscurance.h"
 #include "sample_spiral_counterpart.h"
 
 namespace plumb::counterpart {

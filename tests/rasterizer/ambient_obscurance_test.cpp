@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "ambient_obscurance_counterpart.h"
+#include "ambient_obscurance_agreement.h"
 #include "gl_test.h"
 #include "random_views.h"
 #include "rasterizer/gl_error.h"
@@ -16,61 +16,9 @@ namespace plumb {
 namespace {
 
 using Estimator = AmbientObscuranceEstimator;
+using Case = ObscuranceCase;
 using AmbientObscuranceTest = GlTest;
 PLUMBLINE_BOTH_BACKENDS(AmbientObscuranceTest);
-
-Method unblurred(AmbientObscuranceSettings ao) {
-    ao.blur.radius = 0;
-    Method method;
-    method.ao = ao;
-    return method;
-}
-
-Quantities ambient_visibility_within(float radius, Falloff falloff = Falloff::quadratic) {
-    return {.planes = {"ao"}, .ao_radius = radius, .ao_falloff = falloff};
-}
-
-// Compares image and counterpart pixel by pixel; returns the share of pixels that rounding leaves open.
-double expect_agreement(const counterpart::Layers& layers, const AmbientObscuranceSettings& settings,
-                        const Quantities& quantities, const Image& ao, const counterpart::SpiralPattern& pattern = {}) {
-    const int width = layers.width(), height = layers.height();
-    int ambiguous = 0, wrong = 0;
-    for (int y = 0; y < height; ++y) {
-        for (int x = 0; x < width; ++x) {
-            const counterpart::Visibility expected =
-                counterpart::ambient_visibility(layers, settings, quantities, {x, y}, pattern);
-            ambiguous += expected.ambiguous;
-            if (expected.ambiguous) continue;
-            const double actual = ao.at(x, height - 1 - y);
-            // Float positions 4 m away are good to 1e-6 m; divided by sqrt(eps) = 0.03 m (sao2012: by eps = 0.001 m^2,
-            // but times heights below 1 m) a tap's obscurance is good to about 3e-5 (1e-3). The square root of the mean
-            // is steep near 0, so its square is compared there.
-            const double tolerance = settings.estimator == Estimator::sao2012 ? 1e-3 : 1e-4;
-            const double square_error =
-                std::abs(std::pow(1.0 - actual, 2.0) - std::pow(1.0 - expected.visibility, 2.0));
-            const bool right = std::abs(actual - expected.visibility) < tolerance || square_error < tolerance;
-            if (!right && ++wrong < 5) {
-                ADD_FAILURE() << "pixel (" << x << ", " << y << ") from the bottom left: " << actual << ", expected "
-                              << expected.visibility << " (mean obscurance " << expected.mean << ")";
-            }
-        }
-    }
-    EXPECT_EQ(wrong, 0);
-    return static_cast<double>(ambiguous) / (width * height);
-}
-
-double expect_agreement(GlContext& context, const counterpart::Layers& given, const AmbientObscuranceSettings& settings,
-                        const Quantities& quantities) {
-    ScreenSpaceRun run(context, given, unblurred(settings), quantities);
-    const Image ao = run.render("ao", 1);
-    return expect_agreement(run.layers(), settings, quantities, ao);
-}
-
-struct Case {
-    const char* name;
-    AmbientObscuranceSettings settings;
-    Falloff falloff = Falloff::quadratic;
-};
 
 const std::vector<Case> cases = {
     {"as the paper", {}},
@@ -112,15 +60,8 @@ TEST_P(AmbientObscuranceTest, AgreesWithItsCounterpartOnNoise) {
     }
 }
 
-// A floor, a wall, and a table in front of them under which the second layer sees.
-std::vector<Patch> room() {
-    return {{{-4.0f, -1.0f, -7.0f}, {8.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 8.0f}},
-            {{-4.0f, -1.0f, -6.0f}, {8.0f, 0.0f, 0.0f}, {0.0f, 6.0f, 0.0f}},
-            {{-0.8f, -0.5f, -5.5f}, {1.6f, 0.0f, 0.0f}, {0.0f, 0.0f, 2.0f}}};
-}
-
 TEST_P(AmbientObscuranceTest, AgreesWithItsCounterpartInARoom) {
-    const counterpart::Layers layers = layers_of_patches(slanted_view(120, 80), room());
+    const counterpart::Layers layers = layers_of_patches(slanted_view(120, 80), obscuring_room());
     for (const Case& c : cases) {
         SCOPED_TRACE(c.name);
         EXPECT_LT(expect_agreement(context(), layers, c.settings, ambient_visibility_within(1.0f, c.falloff)), 0.02);
@@ -191,79 +132,9 @@ TEST_P(AmbientObscuranceTest, AnInfinitePlaneIsFullyVisible) {
     }
 }
 
-// A view as narrow as a pixel of 700 lines: coarser ones lose every normal to the source's limit.
-View narrow_view(int width, int height) {
-    return View(Camera::look_at("narrow", {1.0f, 2.0f, 3.0f}, {-2.0f, 0.5f, 1.0f}, 0.3f), width, height);
-}
-
-TEST_P(AmbientObscuranceTest, NormalsByDerivativesAgreeWithTheirCounterpartAndAreRejectedAtEdges) {
-    for (const View& view : {narrow_view(120, 80), narrow_view(119, 79)}) {
-        // A board before a floor and a wall, which meets it: edges in depth, and slants on either side of the limit.
-        const counterpart::Layers layers =
-            layers_of_patches(view, {{{-4.0f, -0.5f, -7.0f}, {8.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 8.0f}},
-                                     {{-4.0f, -1.0f, -6.0f}, {8.0f, 0.0f, 0.0f}, {0.0f, 6.0f, 0.0f}},
-                                     {{-0.2f, -0.3f, -4.5f}, {0.5f, 0.0f, 0.2f}, {0.0f, 0.5f, 0.1f}}});
-        for (const Case& c :
-             std::vector<Case>{{"the demo's", {.estimator = Estimator::g3d_demo}}, {"as the paper", {.samples = 40}}}) {
-            SCOPED_TRACE(c.name);
-            AmbientObscuranceSettings settings = c.settings;
-            settings.normals = ObscuranceNormals::g3d_demo;
-            EXPECT_LT(expect_agreement(context(), layers, settings, ambient_visibility_within(0.5f)), 0.02);
-        }
-        int rejected = 0, kept = 0;
-        for (int y = 0; y < view.height() / 2 * 2; ++y) {
-            for (int x = 0; x < view.width() / 2 * 2; ++x) {
-                const bool found = counterpart::derivative_normal(layers, {x, y}).normal != glm::dvec3(0.0);
-                kept += found, rejected += !found;
-            }
-        }
-        EXPECT_GT(kept, 120 * 80 / 2);
-        EXPECT_GT(rejected, 100) << "edges, and the floor where it is seen at a flat angle";
-    }
-}
-
-TEST_P(AmbientObscuranceTest, AtFewLinesTheSourcesLimitRejectsEveryNormal) {
-    const counterpart::Layers layers = layers_of_patches(slanted_view(60, 45), room());
-    ScreenSpaceRun run(context(), layers, unblurred({.normals = ObscuranceNormals::g3d_demo}),
-                       ambient_visibility_within(1.0f));
-    const Image ao = run.render("ao", 1);
-    for (const float value : ao.values()) ASSERT_EQ(value, 1.0f);
-}
-
-// What the source's points cost: the depth of another pixel lifts taps off a slanted surface.
-TEST_P(AmbientObscuranceTest, PointsAtTheTapsDarkenASlantedPlane) {
-    const std::vector<Patch> floor = {{{-500.0f, -1.0f, -900.0f}, {1000.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 1000.0f}}};
-    ScreenSpaceRun run(context(), layers_of_patches(slanted_view(80, 60), floor),
-                       unblurred({.samples = 1000, .mip_points = MipTapPoint::sao2012}),
-                       ambient_visibility_within(2.0f));
-    const Image ao = run.render("ao", 1);
-    const auto dark = std::ranges::count_if(ao.values(), [](float value) { return value < 0.99f; });
-    EXPECT_GT(dark, 80 * 60 / 4) << "of 80 * 60 pixels, none of which is obscured";
-}
-
-TEST_P(AmbientObscuranceTest, PointsAtTheTapsCannotBeStoredOnes) {
-    const Scene scene = make_cornell();
-    const auto message = [&](const Method& method, const std::string& plane) -> std::string {
-        try {
-            Pipeline(context(), scene, method, {.planes = {plane}, .ao_radius = 0.3f}, 32, 32);
-        } catch (const MethodError& error) {
-            return error.what();
-        }
-        return "no error";
-    };
-    Method method;
-    method.gbuffer.position = PositionSource::stored;
-    method.ao.mip_points = method.radiosity.mip_points = MipTapPoint::sao2012;
-    EXPECT_THAT(message(method, "ao"), testing::HasSubstr("\"from_depth\" or ao.mip_points to \"exact\""));
-    EXPECT_THAT(message(method, "irradiance"), testing::HasSubstr("or radiosity.mip_points to \"exact\""));
-    method.ao.use_mip_chain = method.radiosity.use_mip_chain = false;
-    EXPECT_EQ(message(method, "ao"), "no error");
-    EXPECT_EQ(message(method, "irradiance"), "no error");
-}
-
 TEST_P(AmbientObscuranceTest, ACornerIsDarkerTheCloserOneComes) {
     const View view = slanted_view(81, 121);
-    const counterpart::Layers layers = layers_of_patches(view, {room()[0], room()[1]});
+    const counterpart::Layers layers = layers_of_patches(view, {obscuring_room()[0], obscuring_room()[1]});
     ScreenSpaceRun run(context(), layers, unblurred({.samples = 1000}), ambient_visibility_within(1.0f));
     const Image ao = run.render("ao", 1);
     // Down the middle column, wall pixels by their height above the floor.
@@ -294,77 +165,6 @@ TEST_P(AmbientObscuranceTest, SeedsMoveAndFramesTurnTheTapsAsTheFormulaSays) {
             const Image ao = run.render("ao.of_frame", 1, 0, 0, seed, frame);
             EXPECT_LT(expect_agreement(run.layers(), settings, quantities, ao, pattern), 0.02);
         }
-    }
-}
-
-// Floor, ceiling, walls and end of a corridor, with a shelf across it: something near every point.
-std::vector<Patch> corridor() {
-    return {{{-1.0f, -1.0f, -7.0f}, {2.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 6.5f}},
-            {{-1.0f, 1.0f, -7.0f}, {2.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 6.5f}},
-            {{-1.0f, -1.0f, -7.0f}, {0.0f, 2.0f, 0.0f}, {0.0f, 0.0f, 6.5f}},
-            {{1.0f, -1.0f, -7.0f}, {0.0f, 2.0f, 0.0f}, {0.0f, 0.0f, 6.5f}},
-            {{-1.0f, -1.0f, -5.0f}, {2.0f, 0.0f, 0.0f}, {0.0f, 2.0f, 0.0f}},
-            {{-1.0f, -0.4f, -4.0f}, {2.0f, 0.0f, 0.0f}, {0.0f, 0.1f, 0.8f}}};
-}
-
-// Mean error of 1000 taps, and of four seeds of as many, against the limit of many taps.
-void expect_convergence(GlContext& context, const Case& c) {
-    SCOPED_TRACE(c.name);
-    const counterpart::Layers layers = layers_of_patches(slanted_view(60, 45), corridor());
-    AmbientObscuranceSettings settings = c.settings;
-    const Quantities quantities = ambient_visibility_within(2.0f, c.falloff);
-    std::vector<std::pair<counterpart::Pixel, double>> limits;
-    double obscured = 0.0;
-    for (int y = 4; y < 45; y += 9) {
-        for (int x = 4; x < 60; x += 11) {
-            const double expected = counterpart::limit_of_many_taps(layers, settings, quantities, {x, y}).visibility;
-            limits.push_back({{x, y}, expected});
-            obscured += 1.0 - expected;
-        }
-    }
-    EXPECT_GT(obscured, 0.05 * static_cast<double>(limits.size()));
-    // Of visibilities, whose curve bends little over the noise of a thousand taps.
-    const auto mean_error = [&](int samples, int seeds = 1) {
-        settings.samples = samples;
-        ScreenSpaceRun run(context, layers, unblurred(settings), quantities);
-        const Image ao = mean_over_seeds(run, "ao", 1, seeds);
-        double error = 0.0;
-        for (const auto& [pixel, expected] : limits) error += std::abs(ao.at(pixel.x, 44 - pixel.y) - expected);
-        return error / obscured;
-    };
-    const double few = mean_error(16), many = mean_error(1000), thousands = mean_error(1000, 4);
-    // As the taps of radiosity: N points miss edges by some N^(-3/4).
-    EXPECT_LT(many, 0.03) << "relative error of 1000 taps; of 16: " << few;
-    EXPECT_LT(many, few / 4.0) << few;
-    EXPECT_LT(thousands, 0.01) << "relative error of 4 seeds of 1000 taps; of one: " << many;
-    EXPECT_LT(thousands, many);
-}
-
-TEST_P(AmbientObscuranceTest, ConvergesToItsIntegralOverTheDisc) {
-    expect_convergence(context(), {"the paper's", {.use_mip_chain = false}});
-    expect_convergence(context(), {"the paper's, with the MIP chain", {}});
-}
-
-// Through EGL alone: they are the same taps.
-TEST(AmbientObscurance, EveryEstimatorConvergesToItsIntegralOverTheDisc) {
-    for (Case c :
-         std::vector<Case>{{"linear", {.estimator = Estimator::linear}},
-                           {"one layer", {.layers = 1}},
-                           {"the demo's", {.estimator = Estimator::g3d_demo}},
-                           {"SAO", {.estimator = Estimator::sao2012, .intensity = 0.3f}, Falloff::cubic},
-                           {"SAO undivided", {.estimator = Estimator::sao2012_undivided, .intensity = 0.1f}},
-                           {"Alchemy",
-                            {.estimator = Estimator::alchemy2011,
-                            .bias = 0.005f,
-                            .epsilon = 0.1f,
-                            .intensity = 0.3f,
-                            .exponent = 2.0f},
-                            Falloff::hard},
-                           {"Nielsen's thesis",
-                            {.estimator = Estimator::nielsen2015, .bias = 0.001f, .epsilon = 0.3f, .intensity = 0.1f},
-                            Falloff::hard}}) {
-        c.settings.use_mip_chain = false;
-        expect_convergence(test_context(GlBackend::egl), c);
     }
 }
 

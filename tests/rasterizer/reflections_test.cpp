@@ -8,7 +8,7 @@
 #include "rasterizer/gl_error.h"
 #include "rasterizer/pipeline.h"
 #include "rasterizer/scene_reach.h"
-#include "reflection_run.h"
+#include "reflection_scenes.h"
 #include "scenes/builtin.h"
 #include "screen_space_run.h"
 
@@ -17,29 +17,6 @@ namespace {
 
 using ReflectionsTest = GlTest;
 PLUMBLINE_BOTH_BACKENDS(ReflectionsTest);
-
-const Quantities reflection_alone = {.planes = {"reflection"}};
-constexpr float separation = 0.1f;
-
-Method method_of(ReflectionSettings settings) {
-    settings.enabled = true;
-    Method method;
-    method.gbuffer.minimum_separation = separation;
-    method.reflections = settings;
-    return method;
-}
-
-counterpart::ReflectionRequest request_of(ReflectionSettings settings, const Quantities& quantities = reflection_alone,
-                                          const glm::vec3& sky = glm::vec3(0.0f)) {
-    if (settings.thickness == 0.0f) settings.thickness = separation;
-    counterpart::ReflectionRequest request;
-    request.settings = settings;
-    request.radius = quantities.reflection_radius;
-    request.falloff = quantities.reflection_falloff;
-    if (settings.fallback != ReflectionFallback::none)
-        request.fallback = [sky](const glm::dvec3&, double) { return glm::dvec3(sky); };
-    return request;
-}
 
 struct Count {
     int pixels = 0, ambiguous = 0, hits = 0, second_layer_hits = 0, wrong = 0;
@@ -80,19 +57,6 @@ Count expect_agreement(GlContext& context, const counterpart::Layers& given, con
     // weights of 8 bits between entries a tenth apart, to 1e-3 of radiances of at most 1.
     const double tolerance = settings.roughness == ReflectionRoughness::samples ? 1e-4 : 1.5e-3;
     return expect_agreement(run.layers(), gloss, request_of(settings, quantities, sky), run.render(), tolerance);
-}
-
-// Of these pixels only: the others cost nothing.
-counterpart::Gloss gloss_at(const std::vector<counterpart::Pixel>& pixels, counterpart::Gloss gloss) {
-    for (int y = 0; y < gloss.f0.height(); ++y) {
-        for (int x = 0; x < gloss.f0.width(); ++x) {
-            const counterpart::Pixel pixel{x, gloss.f0.height() - 1 - y};
-            if (std::ranges::find(pixels, pixel) != pixels.end()) continue;
-            for (int c = 0; c < 3; ++c) gloss.f0.at(x, y, c) = 0.0f;
-            gloss.f90.at(x, y) = 0.0f;
-        }
-    }
-    return gloss;
 }
 
 struct Case {
@@ -204,29 +168,9 @@ TEST_P(ReflectionsTest, AgreesWithItsCounterpartInRandomViewsThroughThePipeline)
     EXPECT_GT(hits, 500);
 }
 
-// A floor, a wall of many colours behind it and, between the two, a low table in front of which hangs a board.
-counterpart::Layers room(const View& view) {
-    counterpart::Layers layers =
-        layers_of_patches(view, {{{-4.0f, -1.0f, -7.0f}, {8.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 8.0f}},
-                                 {{-4.0f, -1.0f, -6.0f}, {8.0f, 0.0f, 0.5f}, {0.0f, 6.0f, 0.3f}},
-                                 {{-0.8f, -0.5f, -5.5f}, {1.6f, 0.0f, 0.0f}, {0.0f, 0.0f, 2.0f}},
-                                 {{-0.6f, -0.9f, -3.0f}, {1.0f, 0.0f, 0.2f}, {0.0f, 0.6f, 0.1f}}});
-    for (int layer = 0; layer < 2; ++layer) {
-        for (int y = 0; y < view.height(); ++y) {
-            for (int x = 0; x < view.width(); ++x) {
-                const double depth = layers.depth[layer].at(x, y);
-                layers.radiance[layer].at(x, y, 0) = static_cast<float>(0.5 + 0.4 * std::sin(3.0 * depth));
-                layers.radiance[layer].at(x, y, 1) = 0.1f + 0.8f * static_cast<float>(y) / view.height();
-                layers.radiance[layer].at(x, y, 2) = 0.5f * static_cast<float>(layer);
-            }
-        }
-    }
-    return layers;
-}
-
 TEST_P(ReflectionsTest, AgreesWithItsCounterpartInARoom) {
     const View view = slanted_view(54, 36);
-    const counterpart::Layers layers = room(view);
+    const counterpart::Layers layers = reflected_room(view);
     for (const Case& c : cases) {
         SCOPED_TRACE(c.name);
         const counterpart::Gloss gloss = even_gloss(view, glm::vec3(0.04f), 1.0f, c.roughness);
@@ -329,27 +273,6 @@ TEST_P(ReflectionsTest, AWhiteEnvironmentIsReflectedByTheDirectionalAlbedo) {
     }
 }
 
-// The integral over the hemisphere of what is found times the lobe, by brute force.
-TEST_P(ReflectionsTest, SamplesConvergeToTheLobesIntegral) {
-    const View view = slanted_view(120, 80);
-    counterpart::Layers layers = room(view);
-    const glm::vec3 sky(0.3f, 0.6f, 0.9f);
-    const ReflectionSettings settings{
-        .roughness = samples, .samples = 4096, .step = 1.0f, .fallback = ReflectionFallback::environment};
-    const std::vector<counterpart::Pixel> pixels = {{60, 12}, {30, 20}};
-    const counterpart::Gloss gloss = gloss_at(pixels, even_gloss(view, glm::vec3(0.6f), 1.0f, 0.6f));
-    ReflectionRun run(context(), layers, gloss, method_of(settings), reflection_alone, sky);
-    const Image reflection = run.render();
-    const counterpart::ReflectionTracer tracer(run.layers(), gloss, request_of(settings, reflection_alone, sky));
-    for (const counterpart::Pixel& pixel : pixels) {
-        const glm::dvec3 expected = tracer.integrate(pixel, 160);
-        for (int c = 0; c < 3; ++c) {
-            // 25600 directions of a midpoint rule, and 4096 of the sequence, across the edges of a few objects.
-            EXPECT_NEAR(reflection.at(pixel.x, 79 - pixel.y, c), expected[c], 0.01) << pixel.x;
-        }
-    }
-}
-
 // From below a table, hidden in the first layer by the board in front of it, the floor still reflects the table.
 TEST_P(ReflectionsTest, TwoLayersReflectWhatTheFirstOneHides) {
     const View view(Camera::look_at("front", {0.0f, 0.0f, 0.0f}, {0.0f, -0.1f, -1.0f}, 0.9f), 120, 90);
@@ -382,7 +305,7 @@ TEST_P(ReflectionsTest, TwoLayersReflectWhatTheFirstOneHides) {
 // Rays that pass before a board by less than the separation end on it by the paper's rule, and only by that.
 TEST_P(ReflectionsTest, ThePapersRuleAlsoHitsWhatARayPassesBefore) {
     const View view = slanted_view(72, 48);
-    const counterpart::Layers layers = room(view);
+    const counterpart::Layers layers = reflected_room(view);
     const counterpart::Gloss gloss = even_gloss(view, glm::vec3(1.0f), 1.0f, 0.0f);
     const auto hits = [&](ReflectionHit hit) {
         const ReflectionSettings settings{.roughness = mirror, .hit = hit};
@@ -402,7 +325,7 @@ TEST_P(ReflectionsTest, ThePapersRuleAlsoHitsWhatARayPassesBefore) {
 
 TEST_P(ReflectionsTest, HitsFadeTowardsTheBorder) {
     const View view = slanted_view(72, 48);
-    const counterpart::Layers layers = room(view);
+    const counterpart::Layers layers = reflected_room(view);
     const counterpart::Gloss gloss = even_gloss(view, glm::vec3(1.0f), 1.0f, 0.0f);
     const glm::vec3 sky(7.0f);
     const auto render = [&](int fade) {

@@ -92,10 +92,10 @@ private:
 };
 
 // Of so many patterns of taps.
-inline Image mean_over_seeds(ScreenSpaceRun& run, const std::string& plane, int channels, int seeds) {
-    Image mean = run.render(plane, channels);
+inline Image mean_over_seeds(ScreenSpaceRun& run, const std::string& plane, int channels, int seeds, int layer = 0) {
+    Image mean = run.render(plane, channels, layer);
     for (int seed = 1; seed < seeds; ++seed) {
-        const Image image = run.render(plane, channels, 0, 0, static_cast<std::uint32_t>(seed));
+        const Image image = run.render(plane, channels, layer, 0, static_cast<std::uint32_t>(seed));
         for (std::size_t i = 0; i < mean.values().size(); ++i) mean.values()[i] += image.values()[i];
     }
     for (float& value : mean.values()) value /= static_cast<float>(seeds);

@@ -130,29 +130,6 @@ TEST_P(TemporalFilterTest, AgreesWithItsCounterpartAlongRandomWalks) {
     }
 }
 
-// What the sources' distance of points costs: at the paper's limit of 1 cm slanted surfaces lose their history to the
-// half pixel that a point is off the grid, and no surface gains any.
-TEST_P(TemporalFilterTest, TheDistanceOfPointsRejectsSlantedSurfacesThatTheirPlaneKeeps) {
-    const TemporalWalk walk(width, height);
-    const auto weights = [&](HistoryRejection rejection) {
-        const Method method = method_with(
-            {.alpha = 0.85f, .rejection = rejection, .reject_from = 0.01f, .reject_to = 0.01f, .layers = 2});
-        Pipeline pipeline(context(), walk.scene, method, {.planes = planes_of_filter}, width, height);
-        pipeline.render(walk.frame(0));
-        return pipeline.render(walk.frame(1)).frame.plane("ao.history_weight");
-    };
-    const auto kept = [](const Image& weight) {
-        return std::ranges::count_if(weight.values(), [](float value) { return value > 0.5f * 0.85f; });
-    };
-    const auto from_plane = kept(weights(HistoryRejection::plane)),
-               from_point = kept(weights(HistoryRejection::mara2016));
-    fmt::print("within 1 cm: {} of {} pixels keep their history by the plane's distance, {} by the point's\n",
-               from_plane, width * height, from_point);
-    EXPECT_GT(from_plane, width * height / 2);
-    EXPECT_LT(from_point, from_plane * 9 / 10);
-    EXPECT_GT(from_point, 0);
-}
-
 // A board that turns by 15 degrees a frame: the plane through a point of it is that of the frame before only with the
 // normal of then. A point half a pixel (7 mm) aside would else be taken to be up to 2 mm off, ten times the limit here.
 TEST_P(TemporalFilterTest, TurningSurfacesAreFoundWithTheNormalsThatTheyHad) {
