@@ -99,7 +99,7 @@ std::vector<MethodParameter> method_parameters(Method& m) {
         {"direct.shadow.map_size", &m.direct.shadow.map_size, 16, 16384},
         {"direct.shadow.pcf_radius", &m.direct.shadow.pcf_radius, 0, 16},
         {"direct.shadow.emitter_size", &m.direct.shadow.emitter_size, 16, 8192},
-        {"direct.shadow.emitter_samples", &m.direct.shadow.emitter_samples, 1, 64},
+        {"direct.shadow.emitter_samples", &m.direct.shadow.emitter_samples, 1, 256},
         {"direct.shadow.bias", &m.direct.shadow.bias, 0, 1e3},
         {"environment.size", &m.environment.size, 32, 4096},
         {"environment.samples", &m.environment.samples, 1, 65536},

@@ -57,8 +57,8 @@ void validate(const Method& method) {
         require(value >= 16 && value <= 16384, method,
                 fmt::format("direct.shadow.{} is {}; it must lie between 16 and 16384 texels", name, value));
     }
-    require(shadow.emitter_samples >= 1 && shadow.emitter_samples <= 64, method,
-            fmt::format("direct.shadow.emitter_samples is {}; it must lie between 1 and 64", shadow.emitter_samples));
+    require(shadow.emitter_samples >= 1 && shadow.emitter_samples <= 256, method,
+            fmt::format("direct.shadow.emitter_samples is {}; it must lie between 1 and 256", shadow.emitter_samples));
     require(shadow.paraboloid_tessellation >= 1 && shadow.paraboloid_tessellation <= 64, method,
             fmt::format("direct.shadow.paraboloid_tessellation is {}; it must lie between 1 and 64",
                         shadow.paraboloid_tessellation));

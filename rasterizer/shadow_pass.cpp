@@ -35,8 +35,8 @@ void require_layers(GlContext& context, const char* name, std::size_t layers) {
     context.gl.GetIntegerv(GL_MAX_ARRAY_TEXTURE_LAYERS, &most);
     if (layers > static_cast<std::size_t>(most)) {
         throw MethodError(
-            fmt::format("{} needs {} layers, this OpenGL has {} at most; set direct.shadow.lamps to false, "
-                        "or take lights out of the scene",
+            fmt::format("{} needs {} layers, this OpenGL has {} at most; lower direct.shadow.emitter_samples, set "
+                        "direct.shadow.lamps to false, or take lights out of the scene",
                         name, layers, most));
     }
 }
