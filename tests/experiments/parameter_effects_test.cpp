@@ -160,6 +160,31 @@ TEST(ParameterEffects, LayersThatNobodyAsksForHaveNoParameters) {
     EXPECT_THAT(reason_without_effect(method, "gbuffer.layers", &third), HasSubstr("no plane of layer 4"));
 }
 
+TEST(ParameterEffects, WhatSourcesDoOtherwiseTakesTheStageThatTheyDoItIn) {
+    Method method;
+    method.ao.use_mip_chain = method.radiosity.use_mip_chain = false;
+    method.ao.blur.plane_sharpness = 0.0f;
+    method.radiosity.blur.kind = BlurKind::gaussian_2015;
+    for (const auto& [name, reason] : {std::pair{"ao.mip_points", "ao.use_mip_chain = false"},
+                                       std::pair{"radiosity.mip_points", "radiosity.use_mip_chain = false"},
+                                       std::pair{"ao.blur.plane_exemption", "ao.blur.plane_sharpness = 0"},
+                                       std::pair{"radiosity.blur.plane_exemption", "kind is not"},
+                                       std::pair{"radiosity.blur.weights", "kind is not"},
+                                       std::pair{"ao.temporal.rejection", "ao.temporal.alpha = 0"},
+                                       std::pair{"direct.volume_radius", "direct.local_lights = \"fullscreen\""},
+                                       std::pair{"reflections.hit", "reflections.enabled = false"}}) {
+        EXPECT_THAT(reason_without_effect(method, name), HasSubstr(reason)) << name;
+    }
+    method = {};
+    method.ao.temporal.alpha = 0.5f;
+    method.direct.local_lights = LocalLights::volume_stencil;
+    method.reflections.enabled = true;
+    for (const char* name :
+         {"ao.mip_points", "radiosity.mip_points", "ao.blur.plane_exemption", "radiosity.blur.weights", "ao.pattern",
+          "radiosity.pattern", "ao.temporal.rejection", "direct.volume_radius", "reflections.hit"})
+        EXPECT_THAT(reason_without_effect(method, name), IsEmpty()) << name;
+}
+
 TEST(ParameterEffects, AnExperimentRefusesWhatItsPlanesDoNotShow) {
     const auto parse = [](const std::string& method) {
         const std::string text = "planes = [\"total\"]\nscenes = [{ scene = \"cornell\" }]\nmethods = [" + method + "]";
