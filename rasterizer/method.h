@@ -21,7 +21,7 @@ enum class NormalFormat { oct32, oct16, rgb32f, rgb16f, rgb10a2, r11g11b10f, xy8
 enum class RadianceFormat { rgba32f, rgba16f, r11g11b10f };  // in bytes: 16, 8, 4
 
 // With everything else on, two layers of 1280x720 take less than 400 MiB of OpenGL's memory, but for position = stored,
-// a normal_format of more than 4 bytes, radiance_format = rgba32f or a guard band.
+// a normal_format of more than 4 bytes, a radiance_format other than rgba16f or a guard band.
 struct GBufferSettings {
     SourceOfStage source = SourceOfStage::method;
     int layers = 2;  // 1 to 4; more than 2 by peeling only, for who reads layer3.* and layer4.*

@@ -62,6 +62,10 @@ TEST(MethodMemory, TheSettingsThatTakeMoreAreThoseThatAreNamed) {
     EXPECT_GT(mebibytes("gbuffer.radiance_format = \"rgba32f\"",
                         [](Method& m) { m.gbuffer.radiance_format = RadianceFormat::rgba32f; }),
               bound);
+    // Four bytes, among planes of eight that could share: 16 MiB more than the eight of rgba16f.
+    EXPECT_GT(mebibytes("gbuffer.radiance_format = \"r11g11b10f\"",
+                        [](Method& m) { m.gbuffer.radiance_format = RadianceFormat::r11g11b10f; }),
+              bound);
     EXPECT_GT(mebibytes("gbuffer.guard_band = 16", [](Method& m) { m.gbuffer.guard_band = 16; }), bound);
     // Each further bounce keeps two planes of 16 bytes a pixel for each layer that receives light.
     EXPECT_NEAR(mebibytes("radiosity.bounces = 3", [](Method& m) { m.radiosity.bounces = 3; }) - dearest, 57.0, 15.0);
