@@ -230,7 +230,7 @@ TEST(LightChoice, OfAConstantSkyFollowsTheCosine) {
         const LightTable lights(traced, environment, EmitterSampling::lights);
         const double share = with_lamps ? 0.5 : 1.0;
         const glm::vec3 normal = glm::normalize(glm::vec3(1, 3, -2));
-        const LightReceiver tilted{glm::vec3(0.0f), normal, normal};
+        const LightReceiver tilted{glm::vec3(0.0f), normal, normal, normal};
         const DirectionCells cells(normal, 12);
         const auto of_the_sky = [&](const LightSample& sample) {
             // The sun's and the sky's rays never end; their colours differ.
