@@ -226,7 +226,7 @@ PassDeclaration declare_light_volumes(const Scene& scene, const LightSet& lights
     pass.inputs = {prefix + "depth", prefix + "normal"};
     for (std::string& texture : shadow_textures(lights, LightKinds::lamps)) pass.inputs.push_back(std::move(texture));
     pass.outputs = {plane_name(layer)};
-    pass.parameters = {{"direct.volume_threshold"}, {"direct.volume_faces"}};
+    pass.parameters = {{"direct.volume_threshold"}, {"direct.volume_radius"}, {"direct.volume_faces"}};
     pass.create = [layer](const PassResources& resources) {
         return std::make_unique<LightVolumePass>(resources, layer);
     };

@@ -193,7 +193,7 @@ PassDeclaration declare_radiosity_gather(const Scene& scene, const Method& metho
     // With those of its filters, which run where it runs.
     for (const char* name : {"enabled", "estimator", "samples", "layers", "radius", "spread_pixels", "test_tap_normal",
                              "normalisation", "use_mip_chain", "mip_offset", "minimum_mip_level",
-                             "mip_normals_and_radiance", "blur.", "temporal.", "carry"})
+                             "mip_normals_and_radiance", "mip_points", "pattern", "blur.", "temporal.", "carry"})
         pass.parameters.push_back({fmt::format("radiosity.{}", name)});
     pass.parameters.push_back({"gbuffer.guard_band"});
     if (scene.has_emissive_surfaces()) pass.parameters.push_back({"radiosity.emitters_shine"});

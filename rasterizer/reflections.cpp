@@ -232,7 +232,7 @@ std::vector<PassDeclaration> declare_reflections(const Scene& scene, const Light
     }
     for (const char* name :
          {"enabled", "roughness", "samples", "layers", "step", "first_step", "max_steps", "refinement_steps",
-          "thickness", "max_distance", "bias", "test_hit_normal", "border_fade", "fallback"})
+          "thickness", "hit", "max_distance", "bias", "test_hit_normal", "border_fade", "fallback"})
         pass.parameters.push_back({fmt::format("reflections.{}", name)});
     pass.parameters.push_back({"gbuffer.guard_band"});
     if (settings.thickness == 0.0f) {
