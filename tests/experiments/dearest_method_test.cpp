@@ -79,8 +79,8 @@ TEST(DearestMethod, NoParameterMakesItDearer) {
     const double dearest = mebibytes_of(*context, scene, dearest_method());
     const double found = most_mebibytes(*context, scene, dearest_method());
     EXPECT_LT(found, 400.0);
-    // Without MIP chains for radiosity it takes 1.2 MiB more, as planes fit less well into each other's memory; with them
-    // the settings are told that exceed the bound.
+    // Without MIP chains for radiosity it takes 1.2 MiB more, as planes fit less well into each other's memory; with
+    // them the settings are told that exceed the bound.
     EXPECT_LT(found, dearest + 2.0) << "change dearest_method() to what was found";
 }
 
