@@ -166,8 +166,7 @@ void add_sweep(const ConfigReader& reader, const ConfigValue& table, const std::
             const std::string reason = reason_without_effect(method, setting.name, &planes);
             idle += reason.empty() ? 0 : 1;
             if (reason.empty() || (setting.name != parameter && idle < made.size())) continue;
-            throw ConfigError(fmt::format("{}:{}: {}: has no effect in method '{}', because {}; remove it",
-                                          reader.source(), setting.line, setting.name, method.name, reason));
+            throw without_effect(reader.source(), setting, method.name, reason);
         }
         for (const Method& method : made) selection.settings.push_back({method.name, setting.name, setting.line});
     }

@@ -120,9 +120,7 @@ void require_effects(const Method& method, const ConfigValue& table, const std::
                      const std::function<std::string(const std::string&)>& reason_of) {
     for (const ParameterSetting& setting : parameter_settings(table)) {
         const std::string reason = reason_of(setting.name);
-        if (reason.empty()) continue;
-        throw ConfigError(fmt::format("{}:{}: {}: has no effect in method '{}', because {}; remove it", source,
-                                      setting.line, setting.name, method.name, reason));
+        if (!reason.empty()) throw without_effect(source, setting, method.name, reason);
     }
 }
 
@@ -139,6 +137,12 @@ MethodList builtin_methods() {
         methods.push_back(parse_method(parse_config(embedded::methods::find(file), file), file, methods));
     }
     return methods;
+}
+
+ConfigError without_effect(const std::string& source, const ParameterSetting& setting, const std::string& method,
+                           const std::string& reason) {
+    return ConfigError(fmt::format("{}:{}: {}: has no effect in method '{}', because {}; remove it", source,
+                                   setting.line, setting.name, method, reason));
 }
 
 std::vector<ParameterSetting> parameter_settings(const ConfigValue& table) {

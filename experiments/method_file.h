@@ -24,6 +24,9 @@ struct ParameterSetting {
     std::string name;
     int line = 0;
 };
+// What to throw for a setting in a file that changes nothing; to the reason that reason_without_effect() gives.
+ConfigError without_effect(const std::string& source, const ParameterSetting& setting, const std::string& method,
+                           const std::string& reason);
 std::vector<ParameterSetting> parameter_settings(const ConfigValue& table);
 
 // A method table: `name`, optional `base` (a method of `known`), and parameters; what is not set comes from the base or
