@@ -273,8 +273,7 @@ LightSample LightTable::sample_emitter(const Emitter& emitter, const LightReceiv
     sample.radiance = chosen.inverse_density * emitter.emission;
     if (emitter.varies) {
         const glm::vec2 uv = emitter.corners.uv(chosen.at.x, chosen.at.y);
-        const Material& material = scene_.material(emitter.instance);
-        if (material.alpha_mask && !scene_.scene().is_opaque(material, uv)) return {};
+        if (!scene_.is_opaque(emitter.instance, uv)) return {};
         sample.radiance = chosen.inverse_density * scene_.surface_sample(emitter.instance, uv).emission;
     }
     return sample;

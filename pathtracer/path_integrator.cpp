@@ -8,11 +8,6 @@
 #include "pathtracer/path_dimensions.h"
 
 namespace plumb {
-namespace {
-
-float largest(const glm::vec3& v) { return std::max(v.x, std::max(v.y, v.z)); }
-
-}  // namespace
 
 glm::vec3 PathIntegrator::add_start(const SurfacePoint& x, const glm::vec3& direction, const SampleIndex& sample,
                                     float time, VertexBatch& batch) const {

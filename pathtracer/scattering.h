@@ -15,6 +15,9 @@
 
 namespace plumb {
 
+// Of a colour's channels.
+inline float largest(const glm::vec3& v) { return std::max(v.x, std::max(v.y, v.z)); }
+
 struct ScatterSample {
     glm::vec3 direction{0.0f};
     glm::vec3 weight{0.0f};  // BSDF times cosine over density; 0: the path ends
@@ -79,8 +82,6 @@ public:
     }
 
 private:
-    static float largest(const glm::vec3& v) { return std::max(v.x, std::max(v.y, v.z)); }
-
     SpecularLobe lobe_;
     glm::vec3 normal_, to_viewer_, albedo_, transmission_;
     float diffuse_share_ = 0.0f, specular_share_ = 0.0f, passing_share_ = 0.0f;

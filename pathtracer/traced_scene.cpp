@@ -42,7 +42,7 @@ void TracedScene::reject_holes(const RTCFilterFunctionNArguments* arguments) {
         if (arguments->valid[i] != -1) continue;
         const glm::vec2 uv = part.uv(RTCHitN_primID(arguments->hit, count, i), RTCHitN_u(arguments->hit, count, i),
                                      RTCHitN_v(arguments->hit, count, i));
-        if (!part.scene->is_opaque(*part.material, uv)) arguments->valid[i] = 0;
+        if (!part.is_opaque(uv)) arguments->valid[i] = 0;
     }
 }
 

@@ -11,6 +11,7 @@
 
 #include "pathtracer/embree_api.h"
 #include "pathtracer/embree_fingerprint.h"
+#include "pathtracer/packed_textures.h"
 #include "pathtracer/ray_batch.h"
 #include "pathtracer/surface_hit.h"
 #include "pathtracer/time_span.h"
@@ -70,7 +71,11 @@ public:
 
     TracedTriangle triangle(std::uint32_t instance, std::uint32_t index, float time = now) const;
     // Textures looked up; the same for all points where the material has none.
-    SurfaceSample surface_sample(std::uint32_t instance, const glm::vec2& uv) const;
+    SurfaceSample surface_sample(std::uint32_t instance, const glm::vec2& uv) const {
+        return parts_[instance].sample(uv);
+    }
+    // False in an alpha-masked hole.
+    bool is_opaque(std::uint32_t instance, const glm::vec2& uv) const { return parts_[instance].is_opaque(uv); }
 
     RTCScene embree_scene() const { return embree_scene_; }
     std::uint64_t embree_fingerprint() const { return plumb::embree_fingerprint(device_); }
@@ -81,7 +86,7 @@ private:
     // One instance. With a mirroring transform the second and third corner are swapped, so that the winding still
     // agrees with the normals.
     struct Part {
-        const Scene* scene = nullptr;
+        const PackedTextures* textures = nullptr;
         const Material* material = nullptr;
         const glm::vec3* positions = nullptr;         // pose after pose
         const glm::vec3* normals = nullptr;           // the same; all zero: face normals
@@ -101,7 +106,8 @@ private:
             const std::uint32_t* corners = triangles + 3 * static_cast<std::size_t>(triangle);
             return (1.0f - u - v) * (*uvs)[corners[0]] + u * (*uvs)[corners[1]] + v * (*uvs)[corners[2]];
         }
-        SurfaceSample sample(const SurfaceHit& hit) const;
+        SurfaceSample sample(const glm::vec2& uv) const;
+        bool is_opaque(const glm::vec2& uv) const;
     };
 
     // All that a hit is made of, side by side: two cache lines, where its parts would lie in ten.
@@ -129,6 +135,7 @@ private:
     static void reject_what_layers_lack(const RTCFilterFunctionNArguments* arguments);
 
     const Scene& scene_;
+    const PackedTextures textures_;
     TimeSpan span_;
     RTCDevice device_ = nullptr;
     RTCScene embree_scene_ = nullptr;

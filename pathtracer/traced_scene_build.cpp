@@ -70,7 +70,7 @@ bool may_bulge(const std::array<glm::vec3, 3>& corners, const std::array<glm::ve
 }  // namespace
 
 TracedScene::TracedScene(const Scene& scene, const TimeSpan& span, const char* embree_settings)
-    : scene_(scene), span_(span), parts_(scene.instances.size()) {
+    : scene_(scene), textures_(scene.textures), span_(span), parts_(scene.instances.size()) {
     check_indices(scene);
     device_ = rtcNewDevice(embree_settings);
     if (!device_) {
@@ -145,7 +145,7 @@ void TracedScene::add(std::uint32_t index, const TimeSpan& span) {
     const Instance& instance = scene_.instances[index];
     const Mesh& mesh = scene_.meshes[instance.mesh];
     Part& part = parts_[index];
-    part.scene = &scene_;
+    part.textures = &textures_;
     part.material = &scene_.materials[mesh.material];
     part.triangle_count = static_cast<std::uint32_t>(mesh.triangles.size());
     part.vertex_count = mesh.positions.size();

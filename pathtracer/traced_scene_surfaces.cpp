@@ -73,19 +73,6 @@ PLUMBLINE_INLINE PointGeometry point_geometry(const TracedTriangle& triangle, fl
     return point;
 }
 
-// Starts to fetch the texels that Texture::sample will read at `uv`. Coordinates beyond the texture are taken as
-// repeating it: where it does something else, what is fetched is of no use, but that is all. Inlined, since GCC 12
-// drops calls of functions that do nothing else.
-PLUMBLINE_INLINE void fetch_texels(const Texture& texture, const glm::vec2& uv) {
-    const glm::vec2 size(texture.width, texture.height);
-    const glm::ivec2 first = glm::max((uv - glm::floor(uv)) * size - 0.5f, glm::vec2(0.0f));
-    for (const int row : {first.y, std::min(first.y + 1, texture.height - 1)}) {
-        const std::size_t texel = 4 * (static_cast<std::size_t>(row) * texture.width + first.x);
-        __builtin_prefetch(texture.is_wide() ? static_cast<const void*>(&texture.wide_texels[texel])
-                                             : static_cast<const void*>(&texture.texels[texel]));
-    }
-}
-
 SpecularSurface specular_side(const SurfaceSample& sample) {
     return {sample.specular_f0, sample.specular_f90, ggx_alpha(sample.roughness), sample.transmission};
 }
@@ -114,8 +101,13 @@ std::array<glm::vec3, 3> TracedScene::Part::corner_normals(std::uint32_t triangl
     return {moved(indices[0]), moved(indices[1]), moved(indices[2])};
 }
 
-SurfaceSample TracedScene::Part::sample(const SurfaceHit& hit) const {
-    return has_textures ? scene->surface(*material, uv(hit.triangle, hit.u, hit.v)) : constant;
+SurfaceSample TracedScene::Part::sample(const glm::vec2& uv) const {
+    if (!has_textures) return constant;
+    return sample_surface(*material, [&](int texture) { return textures->sample(texture, uv); });
+}
+
+bool TracedScene::Part::is_opaque(const glm::vec2& uv) const {
+    return is_surface_opaque(*material, [&](int texture) { return textures->sample(texture, uv); });
 }
 
 SurfacePoint TracedScene::surface_point(const SurfaceHit& hit, const glm::vec3& ray_direction, float time) const {
@@ -133,7 +125,7 @@ SurfacePoint TracedScene::surface_point(const SurfaceHit& hit, const glm::vec3& 
     point.shading_normal = geometry.shading_normal;
     point.bulge = geometry.bulge;
     if (geometry.side > 0.0f || part.material->two_sided) {
-        const SurfaceSample sample = part.sample(hit);
+        const SurfaceSample sample = part.sample(part.uv(hit.triangle, hit.u, hit.v));
         point.albedo = sample.albedo, point.emission = sample.emission;
         if (!part.is_plain) point.specular = specular_side(sample);
     }
@@ -215,13 +207,13 @@ void TracedScene::look_up_textures(const HitBatch& hits, const MetRays& met, con
         const Material& material = *part.material;
         for (const int texture :
              {material.base_colour_texture, material.metallic_roughness_texture, material.emission_texture}) {
-            if (texture != no_texture) fetch_texels(scene_.textures[texture], uv);
+            if (texture != no_texture) textures_.fetch(texture, uv);
         }
     }
     for (int i = 0; i < met.count; ++i) {
         const Part& part = parts_[hits.instance[met.ray[i]]];
         if (!part.has_textures) continue;
-        const SurfaceSample sample = scene_.surface(*part.material, {corners.texture_u[i], corners.texture_v[i]});
+        const SurfaceSample sample = part.sample({corners.texture_u[i], corners.texture_v[i]});
         points.albedo.set(i, lit[i] * sample.albedo), points.emission.set(i, lit[i] * sample.emission);
     }
 }
@@ -276,11 +268,6 @@ TracedTriangle TracedScene::triangle(std::uint32_t instance, std::uint32_t index
         triangle.uv_c = (*part.uvs)[corners[2]];
     }
     return triangle;
-}
-
-SurfaceSample TracedScene::surface_sample(std::uint32_t instance, const glm::vec2& uv) const {
-    const Part& part = parts_[instance];
-    return part.has_textures ? part.scene->surface(*part.material, uv) : part.constant;
 }
 
 }  // namespace plumb

@@ -66,37 +66,11 @@ void Scene::move_to(double time) {
 }
 
 SurfaceSample Scene::surface(const Material& material, glm::vec2 uv) const {
-    SurfaceSample sample;
-    sample.base_colour = material.base_colour;
-    if (material.base_colour_texture != no_texture) {
-        sample.base_colour *= glm::vec3(textures[material.base_colour_texture].sample(uv));
-    }
-    sample.metallic = material.metallic;
-    sample.roughness = material.roughness;
-    if (material.metallic_roughness_texture != no_texture) {
-        const glm::vec4 texel = textures[material.metallic_roughness_texture].sample(uv);
-        sample.roughness *= texel.y;
-        sample.metallic *= texel.z;
-    }
-    sample.emission = material.emission;
-    if (material.emission_texture != no_texture) {
-        sample.emission *= glm::vec3(textures[material.emission_texture].sample(uv));
-    }
-    sample.albedo = sample.base_colour * (1.0f - sample.metallic);
-    const float dielectric_f90 = material.dielectric_reflectance > 0.0f ? 1.0f : 0.0f;
-    sample.specular_f0 = glm::mix(glm::vec3(material.dielectric_reflectance), sample.base_colour, sample.metallic);
-    sample.specular_f90 = glm::vec3(glm::mix(dielectric_f90, 1.0f, sample.metallic));
-    sample.transmission = material.transmission;
-    return sample;
+    return sample_surface(material, [&](int texture) { return textures[texture].sample(uv); });
 }
 
 bool Scene::is_opaque(const Material& material, glm::vec2 uv) const {
-    if (!material.alpha_mask) return true;
-    if (material.alpha_texture != no_texture) {
-        return textures[material.alpha_texture].sample(uv)[material.alpha_channel] >= material.alpha_cutoff;
-    }
-    if (material.base_colour_texture == no_texture) return true;
-    return textures[material.base_colour_texture].sample(uv).w >= material.alpha_cutoff;
+    return is_surface_opaque(material, [&](int texture) { return textures[texture].sample(uv); });
 }
 
 glm::vec3 Scene::environment_radiance(const glm::vec3& direction) const {

@@ -13,6 +13,7 @@
 #include "scenes/light.h"
 #include "scenes/material.h"
 #include "scenes/motion.h"
+#include "scenes/surface_sample.h"
 #include "scenes/texture.h"
 
 namespace plumb {
@@ -36,18 +37,6 @@ struct Instance {
     bool moves() const { return !motion.keys.empty(); }
     // world_from_object at `time` (seconds); always the same for an instance that stands still.
     glm::mat4 pose(double time) const { return moves() ? motion.pose(time) : world_from_object; }
-};
-
-// What a material is at one point, textures looked up. Alpha-masked holes are told by `is_opaque`.
-struct SurfaceSample {
-    glm::vec3 albedo{0.0f};  // diffuse reflectance: base colour * (1 - metallic)
-    glm::vec3 base_colour{0.0f};
-    glm::vec3 emission{0.0f};
-    float metallic = 0.0f;
-    float roughness = 1.0f;
-    glm::vec3 specular_f0{0.0f};  // of the specular lobe, see material.h; f0 = f90 = 0: there is none
-    glm::vec3 specular_f90{0.0f};
-    glm::vec3 transmission{0.0f};
 };
 
 struct Bounds {
