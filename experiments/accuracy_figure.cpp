@@ -89,11 +89,13 @@ void compare_with_path_tracer(const RunResults& results, EqualRow& row) {
     }
     if (!errors.empty()) {
         const RatioSummary ratio = summarise_ratios(errors);
-        row.rmse_ratio = ratio.mean, row.rmse_ratio_lower = ratio.lower, row.rmse_ratio_upper = ratio.upper;
+        row.rmse_ratio = ratio.mean;
+        if (ratio.has_interval()) row.rmse_ratio_lower = ratio.lower, row.rmse_ratio_upper = ratio.upper;
     }
     if (!times.empty()) {
         const RatioSummary ratio = summarise_ratios(times);
-        row.time_ratio = ratio.mean, row.time_ratio_lower = ratio.lower, row.time_ratio_upper = ratio.upper;
+        row.time_ratio = ratio.mean;
+        if (ratio.has_interval()) row.time_ratio_lower = ratio.lower, row.time_ratio_upper = ratio.upper;
     }
 }
 
@@ -197,11 +199,12 @@ std::string print_equal_rows_csv(const RunResults& results) {
         "scene,plane,truth,method,views,milliseconds,rmse,on_front,equal_time_rmse_ratio,lower,upper,extrapolated,"
         "equal_error_time_ratio,lower,upper,extrapolated\n";
     for (const EqualRow& row : equal_rows(results)) {
-        text += fmt::format("{},{},{},{},{},{:.6g},{:.6g},{},{:.6g},{:.6g},{:.6g},{},{:.6g},{:.6g},{:.6g},{}\n",
-                            csv_text(row.scene), csv_text(row.plane), csv_text(row.truth), csv_text(row.method),
-                            row.views, row.milliseconds, row.rmse, row.on_front ? 1 : 0, row.rmse_ratio,
-                            row.rmse_ratio_lower, row.rmse_ratio_upper, row.extrapolated_at_equal_time, row.time_ratio,
-                            row.time_ratio_lower, row.time_ratio_upper, row.extrapolated_at_equal_error);
+        text += fmt::format("{},{},{},{},{},{:.6g},{:.6g},{},{:.6g},{},{},{},{:.6g},{},{},{}\n", csv_text(row.scene),
+                            csv_text(row.plane), csv_text(row.truth), csv_text(row.method), row.views, row.milliseconds,
+                            row.rmse, row.on_front ? 1 : 0, row.rmse_ratio, csv_number(row.rmse_ratio_lower),
+                            csv_number(row.rmse_ratio_upper), row.extrapolated_at_equal_time, row.time_ratio,
+                            csv_number(row.time_ratio_lower), csv_number(row.time_ratio_upper),
+                            row.extrapolated_at_equal_error);
     }
     return text;
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/no_value.h"
 #include "experiments/results.h"
 
 namespace plumb {
@@ -17,8 +18,9 @@ struct EqualRow {
     bool on_front = false;  // no other method is faster and more accurate
     // Of the path tracer, with as much time: its RMSE over the method's; below 1 it is the better choice. With the same
     // error: its time over the method's. Means of the views' ratios; 0 where the path tracer has no curve there.
-    double rmse_ratio = 0.0, rmse_ratio_lower = 0.0, rmse_ratio_upper = 0.0;
-    double time_ratio = 0.0, time_ratio_lower = 0.0, time_ratio_upper = 0.0;
+    // Without value where there are too few views for an interval (RatioSummary::has_interval).
+    double rmse_ratio = 0.0, rmse_ratio_lower = no_value, rmse_ratio_upper = no_value;
+    double time_ratio = 0.0, time_ratio_lower = no_value, time_ratio_upper = no_value;
     // Views on which its curve had to be continued beyond its first or last number of samples.
     int extrapolated_at_equal_time = 0, extrapolated_at_equal_error = 0;
 };

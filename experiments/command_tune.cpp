@@ -93,7 +93,9 @@ std::string print_ratio(const std::vector<ViewCost>& before, const std::vector<V
     }
     const RatioSummary ratio = summarise_ratios(ratios);
     if (ratio.count == 0) return "the truth is too noisy for a statement";
-    if (ratio.count < 2) return fmt::format("{:.3f} times the RMSE on the one view", ratio.mean);
+    if (!ratio.has_interval())
+        return fmt::format("{:.3f} times the RMSE over {} view{}, too few for an interval", ratio.mean, ratio.count,
+                           ratio.count == 1 ? "" : "s");
     return fmt::format("{:.3f} times the RMSE (95 % interval {:.3f} to {:.3f} over {} views)", ratio.mean, ratio.lower,
                        ratio.upper, ratio.count);
 }

@@ -74,7 +74,7 @@ std::optional<FigurePoint> make_point(const Figure& figure, const std::vector<Ce
     const MeanSummary mean = is_relative ? measured.summary : average(measured.cases, !figure.linear_y);
     if (mean.count == 0) return std::nullopt;
     point.y = mean.mean, point.count = mean.count;
-    if (is_relative && std::isfinite(mean.lower)) point.lower = mean.lower, point.upper = mean.upper;
+    if (is_relative && mean.has_interval()) point.lower = mean.lower, point.upper = mean.upper;
     if (figure.x == "parameter") point.x = std::stod(category);
     if (figure.kind == FigureKind::curves && figure.x != "parameter") {
         quantity.kind = QuantityKind::value, quantity.measure = figure.x;
@@ -228,10 +228,10 @@ std::string ratio_text(const Originals& originals, const OriginalRow& row, const
                        const std::vector<Cell>& cells) {
     const MeasuredQuantity quantity{originals.measure, QuantityKind::ratio, originals.where, row.of, over.of};
     const MeanSummary paired = measure_quantity(cells, quantity).summary;
-    if (paired.count > 1)
+    if (paired.has_interval())
         return fmt::format("{} [{}, {}]", short_number(paired.mean), short_number(paired.lower),
                            short_number(paired.upper));
-    if (paired.count == 1) return short_number(paired.mean);
+    if (paired.count > 0) return short_number(paired.mean);
     const MeanSummary ours = mean_of_row(originals, row, cells), theirs = mean_of_row(originals, over, cells);
     return ours.count > 0 && theirs.count > 0 ? short_number(ours.mean / theirs.mean) : "-";
 }

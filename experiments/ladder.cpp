@@ -131,7 +131,7 @@ void climb_in_scene(const Ladder& ladder, const std::string& scene, const RunRes
     for (const Rung& rung : rungs) {
         const Step step = step_between(&rung == &rungs.front() ? nullptr : &rung - 1, rung, places);
         WaterfallBar bar{rung.name, step.from, step.to, no_value, no_value, note_of(step)};
-        if (step.change.count > 1) bar.change_lower = step.change.lower, bar.change_upper = step.change.upper;
+        if (step.change.has_interval()) bar.change_lower = step.change.lower, bar.change_upper = step.change.upper;
         waterfall.bars.push_back(std::move(bar));
     }
     climb.waterfalls.push_back(std::move(waterfall));

@@ -172,8 +172,6 @@ Json ladder_json(const Waterfall& waterfall) {
     return json;
 }
 
-std::string csv_number(double value) { return std::isnan(value) ? "" : fmt::format("{:.9g}", value); }
-
 // What both CSV files begin their lines with.
 constexpr const char* row_columns = "scene,view,path,plane,truth,method";
 
@@ -196,6 +194,8 @@ std::string stability_values(const std::optional<PathStabilityResult>& stability
 }
 
 }  // namespace
+
+std::string csv_number(double value) { return std::isnan(value) ? "" : fmt::format("{:.9g}", value); }
 
 std::string csv_text(const std::string& text) {
     if (text.find_first_of(",\"\r\n") == std::string::npos) return text;

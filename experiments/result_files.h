@@ -22,5 +22,7 @@ void write_result_files(const RunResults& results, const std::filesystem::path& 
 
 // A cell of a CSV file, quoted where it has to be.
 std::string csv_text(const std::string& text);
+// Nine digits, which tell floats apart; nothing for what is not a number.
+std::string csv_number(double value);
 
 }  // namespace plumb

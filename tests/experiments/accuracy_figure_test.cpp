@@ -2,6 +2,8 @@
 // by hand; and what the chart draws them with.
 #include "experiments/accuracy_figure.h"
 
+#include <cmath>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -71,6 +73,17 @@ TEST(EqualRows, CompareWithThePathTracerAtEqualTimeAndEqualError) {
     EXPECT_NEAR(rows[1].rmse_ratio, 0.1 / 0.05, 1e-9);
     EXPECT_NEAR(rows[1].time_ratio, 16.0 / 4.0, 1e-9);
     EXPECT_EQ(rows[1].extrapolated_at_equal_error, 0);
+}
+
+TEST(EqualRows, TwoViewsAreTooFewForAnInterval) {
+    RunResults results = results_with_path_tracer();
+    EXPECT_FALSE(std::isnan(equal_rows(results)[0].rmse_ratio_lower));
+    std::erase_if(results.rows, [](const ResultRow& row) { return row.view == "right"; });
+    const std::vector<EqualRow> rows = equal_rows(results);
+    EXPECT_EQ(rows[0].views, 2);
+    EXPECT_GT(rows[0].rmse_ratio, 0.0);
+    EXPECT_TRUE(std::isnan(rows[0].rmse_ratio_lower) && std::isnan(rows[0].time_ratio_upper));
+    EXPECT_THAT(print_equal_rows_csv(results), HasSubstr(",1.41421,,,0,2,,,0\n"));
 }
 
 TEST(EqualRows, WithoutAPathTracerThereIsNothingToCompareWith) {
