@@ -64,7 +64,8 @@ std::vector<MustFailVerdict> run_must_fail(const CheckFile& check, const std::ve
         const Threshold& named = *std::ranges::find(thresholds, must_fail.threshold, &Threshold::name);
         const Experiment experiment = must_fail_experiment(check.experiment, must_fail, named);
         const Threshold threshold = must_fail_threshold(must_fail, named);
-        const RunResults run = run_experiment(experiment, finder, options_of_must_fail(options, must_fail));
+        LoadedScenes scenes(finder);
+        const RunResults run = run_experiment(experiment, scenes, options_of_must_fail(options, must_fail));
         const CostRound costs = measure_costs(experiment, {threshold}, finder, options.backend, options.stop);
         add_failures(run, costs, fmt::format("must fail, {}: ", must_fail.name), failed_cells);
         if (stopped(options)) break;
@@ -130,11 +131,12 @@ Experiment must_fail_experiment(const Experiment& experiment, const MustFail& mu
 }
 
 DiskUse disk_use(const CheckFile& check, const SceneFinder& finder, bool write_frames) {
-    DiskUse use = disk_use(check.experiment, finder, write_frames);
+    LoadedScenes scenes(finder);
+    DiskUse use = disk_use(check.experiment, scenes, write_frames);
     for (const MustFail& must_fail : check.must_fail) {
         const Threshold& threshold = *check.find_threshold(must_fail.threshold);
         // Its truths are the experiment's.
-        use.output += disk_use(must_fail_experiment(check.experiment, must_fail, threshold), finder, false).output;
+        use.output += disk_use(must_fail_experiment(check.experiment, must_fail, threshold), scenes, false).output;
     }
     return use;
 }
@@ -156,12 +158,13 @@ MustFailVerdict judge_must_fail(const MustFail& must_fail, Verdict verdict) {
 }
 
 CheckResults run_check(const CheckFile& check, const SceneFinder& finder, const RunOptions& options) {
-    require_effects_in_scenes(check.experiment, finder);
+    LoadedScenes scenes(finder);
+    require_effects_in_scenes(check.experiment, scenes);
     require_limits(check);
     require_workload(check);
     const auto start = std::chrono::steady_clock::now();
     CheckResults results;
-    results.run = run_experiment(check.experiment, finder, options);
+    results.run = run_experiment(check.experiment, scenes, options);
     results.costs = measure_costs(check.experiment, check.set.thresholds, finder, options.backend, options.stop);
     add_failures(results.run, results.costs, "", results.failed_cells);
     if (!stopped(options)) {
@@ -179,7 +182,8 @@ bool CalibrationResults::proven() const {
 
 CalibrationResults run_calibration(const CheckFile& check, const SceneFinder& finder, const RunOptions& options,
                                    const CalibrationOptions& calibration) {
-    require_effects_in_scenes(check.experiment, finder);
+    LoadedScenes scenes(finder);
+    require_effects_in_scenes(check.experiment, scenes);
     const std::vector<Threshold>& thresholds = check.set.thresholds;
     if (calibration.add) require_workload(check);
     CalibrationResults results;
@@ -189,7 +193,7 @@ CalibrationResults run_calibration(const CheckFile& check, const SceneFinder& fi
     {
         const BusyCores load(calibration.loaded ? std::max(1u, std::thread::hardware_concurrency()) : 0);
         for (int run = 0; run < calibration.repetitions; ++run) {
-            const RunResults rows = run_experiment(check.experiment, finder, options);
+            const RunResults rows = run_experiment(check.experiment, scenes, options);
             const CostRound costs = measure_costs(check.experiment, thresholds, finder, options.backend, options.stop);
             results.interrupted = stopped(options);
             if (results.interrupted) return results;

@@ -91,7 +91,7 @@ void write_claims(const std::filesystem::path& folder, const std::filesystem::pa
 class Reproducer {
 public:
     Reproducer(const ReproduceCommandOptions& options, const CommonOptions& common)
-        : options_(options), finder_(common.scenes_dirs), hashes_(finder_) {}
+        : options_(options), finder_(common.scenes_dirs) {}
 
     // Exit code of this one. Throws what loading and rendering throw.
     int reproduce(const std::string& name) {
@@ -99,8 +99,9 @@ public:
         const std::filesystem::path folder = options_.output / reproduction.name;
         require_writable_folder(folder);
         fmt::print("\n{}: {}\n{}\n", reproduction.name, reproduction.title, reproduction.question);
-        std::optional<Measurements> measurements = kept(reproduction, folder);
-        if (!measurements) measurements = measure(reproduction, name, folder);
+        LoadedScenes scenes(finder_);
+        std::optional<Measurements> measurements = kept(reproduction, scenes, folder);
+        if (!measurements) measurements = measure(reproduction, name, scenes, folder);
         if (measurements->interrupted) {
             fmt::print(
                 "\nInterrupted: no figures were made of it; the same command goes on with the references and cells "
@@ -122,7 +123,8 @@ public:
     DiskUse all_disk_use(const std::vector<std::string>& names) const {
         DiskUse all;
         for (const std::string& name : names) {
-            const DiskUse use = disk_use(load_reproduction(name), finder_, options_.frames, options_.quick);
+            LoadedScenes scenes(finder_);
+            const DiskUse use = disk_use(load_reproduction(name), scenes, options_.frames, options_.quick);
             all.cache += use.cache, all.output += use.output;
         }
         return all;
@@ -141,7 +143,8 @@ public:
 
 private:
     // What a run before this one found, where it still stands.
-    std::optional<Measurements> kept(const Reproduction& reproduction, const std::filesystem::path& folder) {
+    std::optional<Measurements> kept(const Reproduction& reproduction, LoadedScenes& scenes,
+                                     const std::filesystem::path& folder) {
         const std::filesystem::path file = folder / "measurements.json";
         if (options_.present) return read_measurements_json(file);
         if (options_.again || !std::filesystem::exists(file)) return std::nullopt;
@@ -149,7 +152,7 @@ private:
             Measurements measurements = read_measurements_json(file);
             const bool stands =
                 measurements.failures.empty() &&
-                measurements.key == measuring_key(reproduction, hashes_, options_.run.backend, options_.quick);
+                measurements.key == measuring_key(reproduction, hashes_, scenes, options_.run.backend, options_.quick);
             if (!stands) return std::nullopt;
             fmt::print("measured before ({}); --again measures it anew\n", measurements.started);
             return measurements;
@@ -158,18 +161,20 @@ private:
         }
     }
 
-    Measurements measure(const Reproduction& reproduction, const std::string& name,
+    Measurements measure(const Reproduction& reproduction, const std::string& name, LoadedScenes& scenes,
                          const std::filesystem::path& folder) {
         RunOptions run = options_.run;
         run.output = folder / "run";
         run.write_frames = options_.frames;
         run.stop = &interruption_flag();
         run.command = fmt::format("plumbline reproduce {}{}", name, options_.quick ? " --quick" : "");
-        const DiskUse use = disk_use(reproduction, finder_, run.write_frames, options_.quick);
+        const DiskUse use = disk_use(reproduction, scenes, run.write_frames, options_.quick);
         if (use.output > 0) fmt::print("{}\n", describe_disk_use(use, run.cache_dir, run.output));
         std::fflush(stdout);
-        Measurements measurements = run_reproduction(reproduction, finder_, run, options_.quick);
-        measurements.key = measuring_key(reproduction, hashes_, run.backend, options_.quick);
+        // Before the run, which releases the scenes.
+        const std::string key = measuring_key(reproduction, hashes_, scenes, run.backend, options_.quick);
+        Measurements measurements = run_reproduction(reproduction, scenes, run, options_.quick);
+        measurements.key = key;
         return measurements;
     }
 

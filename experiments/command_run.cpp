@@ -122,14 +122,15 @@ void write_figures(const RunResults& results, const std::filesystem::path& folde
 
 RunResults run_comparison(const RunOptions& run_options, const CommonOptions& common, Experiment experiment) {
     const SceneFinder finder(common.scenes_dirs);
+    LoadedScenes scenes(finder);
     print_question(experiment.title, experiment.question);
-    for (const LeftOutScene& scene : leave_out_absent_scenes(experiment, finder))
+    for (const LeftOutScene& scene : leave_out_absent_scenes(experiment, scenes))
         fmt::print("left out: {}\n", scene.message);
-    require_effects_in_scenes(experiment, finder);
-    fmt::print("{}\n", describe_disk_use(disk_use(experiment, finder, run_options.write_frames), run_options.cache_dir,
+    require_effects_in_scenes(experiment, scenes);
+    fmt::print("{}\n", describe_disk_use(disk_use(experiment, scenes, run_options.write_frames), run_options.cache_dir,
                                          run_options.output));
     std::fflush(stdout);
-    RunResults results = run_experiment(experiment, finder, run_options);
+    RunResults results = run_experiment(experiment, scenes, run_options);
 
     fmt::print("\n{}\n{}\n", print_results_table(results.rows), print_equal_rows(results));
     for (const std::string& sentence : results.summary) fmt::print("* {}\n", sentence);

@@ -119,8 +119,9 @@ int run(TuneCommandOptions options, const CommonOptions& common) {
     if (options.output.empty())
         options.output = std::filesystem::path("out") / (name_of_tuned(options, start) + ".toml");
     const SceneFinder finder(common.scenes_dirs);
+    LoadedScenes scenes(finder);
     // Nothing but truths, and a file of a method.
-    fmt::print("{}\n", describe_disk_use({disk_use(experiment, finder, false).cache, 0}, options.run.cache_dir,
+    fmt::print("{}\n", describe_disk_use({disk_use(experiment, scenes, false).cache, 0}, options.run.cache_dir,
                                          std::filesystem::absolute(options.output).parent_path()));
     std::fflush(stdout);
 

@@ -16,10 +16,10 @@ std::uintmax_t channels_of(const std::string& plane) {
 std::string gigabytes(std::uintmax_t bytes) { return fmt::format("{:.2g} GB", static_cast<double>(bytes) * 1e-9); }
 
 // Of a scene that cannot be loaded there will be none, but a failure on record.
-std::uintmax_t view_count(const ExperimentScene& entry, const SceneFinder& finder) {
+std::uintmax_t view_count(const ExperimentScene& entry, LoadedScenes& scenes) {
     if (!entry.views.empty()) return entry.views.size();
     try {
-        return finder.load(entry.scene).cameras.size();
+        return scenes.load(entry.scene).cameras.size();
     } catch (const SceneError&) {
         return 0;
     }
@@ -34,7 +34,7 @@ std::uintmax_t free_space(std::filesystem::path folder) {
 
 }  // namespace
 
-DiskUse disk_use(const Experiment& experiment, const SceneFinder& finder, bool write_frames) {
+DiskUse disk_use(const Experiment& experiment, LoadedScenes& scenes, bool write_frames) {
     const auto pixels = static_cast<std::uintmax_t>(experiment.width) * static_cast<std::uintmax_t>(experiment.height);
     constexpr std::uintmax_t planes_of_truth = 4;  // itself, its halves, its variance
     std::uintmax_t full = 0, limited = 0;          // bytes of one image of every plane
@@ -48,7 +48,7 @@ DiskUse disk_use(const Experiment& experiment, const SceneFinder& finder, bool w
     const std::uintmax_t curve = experiment.path_tracer_samples.size();
     DiskUse use;
     for (const ExperimentScene& entry : experiment.scenes) {
-        const std::uintmax_t views = view_count(entry, finder);
+        const std::uintmax_t views = view_count(entry, scenes);
         std::uintmax_t frames = 0;
         for (const ExperimentPath& path : entry.paths) frames += static_cast<std::uintmax_t>(path.frames);
         use.cache += planes_of_truth * ((views + frames) * (1 + oracles) * full + views * limited);

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "experiments/experiment_file.h"
-#include "experiments/scene_finder.h"
+#include "experiments/loaded_scenes.h"
 
 namespace plumb {
 
@@ -17,7 +17,7 @@ struct DiskUse {
 };
 
 // Loads the scenes whose views the experiment does not name; those that cannot be loaded count for nothing.
-DiskUse disk_use(const Experiment& experiment, const SceneFinder& finder, bool write_frames);
+DiskUse disk_use(const Experiment& experiment, LoadedScenes& scenes, bool write_frames);
 
 // "at most 0.2 GB of references and 0.1 GB of results"
 std::string print_disk_use(const DiskUse& use);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <optional>
 #include <set>
 #include <utility>
 
@@ -12,7 +11,7 @@
 
 #include "experiments/config_values.h"
 #include "experiments/ladder.h"
-#include "experiments/scene_finder.h"
+#include "experiments/loaded_scenes.h"
 #include "scenes/scene.h"
 #include "scenes/scene_error.h"
 
@@ -315,7 +314,7 @@ Experiment parse_experiment(const ConfigValue& table, const std::filesystem::pat
 
 Experiment load_experiment(const std::filesystem::path& file) { return parse_experiment(read_config(file), file); }
 
-std::vector<LeftOutScene> leave_out_absent_scenes(Experiment& experiment, const SceneFinder& finder) {
+std::vector<LeftOutScene> leave_out_absent_scenes(Experiment& experiment, LoadedScenes& scenes) {
     std::vector<LeftOutScene> left_out;
     const auto leave_out = [&](const std::string& scene, const char* message, const std::string& kept) {
         const std::filesystem::path path = scene;
@@ -326,7 +325,7 @@ std::vector<LeftOutScene> leave_out_absent_scenes(Experiment& experiment, const 
     std::erase_if(experiment.scenes, [&](const ExperimentScene& scene) {
         if (!scene.optional) return false;
         try {
-            finder.load(scene.scene);
+            scenes.load(scene.scene);
             return false;
         } catch (const MissingSceneFile& error) {
             return leave_out(scene.scene, error.what(), error.without_folders());
@@ -344,7 +343,7 @@ std::vector<LeftOutScene> leave_out_absent_scenes(Experiment& experiment, const 
     return left_out;
 }
 
-void require_effects_in_scenes(const Experiment& experiment, const SceneFinder& finder) {
+void require_effects_in_scenes(const Experiment& experiment, LoadedScenes& scenes) {
     const std::string source = experiment.file.string();
     std::vector<MethodSetting> idle = experiment.method_settings;  // as far as the scenes have been seen
     std::map<std::pair<std::string, std::string>, std::string> reasons;
@@ -352,18 +351,18 @@ void require_effects_in_scenes(const Experiment& experiment, const SceneFinder& 
     for (const ExperimentScene& entry : experiment.scenes) {
         const bool overrides = !std::get<ConfigMembers>(entry.method_overrides.value).empty();
         if (idle.empty() && !overrides) continue;
-        std::optional<Scene> scene;
+        const Scene* scene = nullptr;
         try {
-            scene = finder.load(entry.scene);
+            scene = &scenes.load(entry.scene);
         } catch (const SceneError&) {
             all_seen = false;  // told when it is rendered
             continue;
         }
-        require_effective_overrides(experiment.methods, entry.method_overrides, source, &experiment.planes, &*scene);
+        require_effective_overrides(experiment.methods, entry.method_overrides, source, &experiment.planes, scene);
         std::erase_if(idle, [&](const MethodSetting& setting) {
             const Method method = method_in_scene(*find_method(experiment.methods, setting.method), entry, source);
             std::string& reason = reasons[{setting.method, setting.parameter}];
-            reason = reason_without_effect(method, setting.parameter, &experiment.planes, &*scene);
+            reason = reason_without_effect(method, setting.parameter, &experiment.planes, scene);
             return reason.empty();
         });
     }

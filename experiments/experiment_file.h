@@ -16,7 +16,7 @@
 
 namespace plumb {
 
-class SceneFinder;
+class LoadedScenes;
 struct Scene;
 
 // A walk along one of a scene's camera paths, frame by frame; instances that move are where they are at that time.
@@ -131,12 +131,12 @@ struct LeftOutScene {
 };
 
 // Takes those optional scenes out that cannot be loaded. Throws SceneError where none would be left.
-std::vector<LeftOutScene> leave_out_absent_scenes(Experiment& experiment, const SceneFinder& finder);
+std::vector<LeftOutScene> leave_out_absent_scenes(Experiment& experiment, LoadedScenes& scenes);
 
 // Throws ConfigError for a parameter that the experiment's file sets and that nothing in any of the scenes is concerned
 // with, or that a scene overrides and nothing in that scene is: light without lights, reflections without anything
 // glossy. Scenes that cannot be loaded are taken to have everything.
-void require_effects_in_scenes(const Experiment& experiment, const SceneFinder& finder);
+void require_effects_in_scenes(const Experiment& experiment, LoadedScenes& scenes);
 
 // The same question at a small size, for trying it out: a quarter of the resolution and few samples...
 void make_small(Experiment& experiment);

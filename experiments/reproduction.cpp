@@ -86,25 +86,25 @@ bool asks_for(const Presentation& presentation, std::string_view measure) {
            });
 }
 
-Measurements run_comparison(const Reproduction& reproduction, const SceneFinder& finder, const RunOptions& options,
+Measurements run_comparison(const Reproduction& reproduction, LoadedScenes& scenes, const RunOptions& options,
                             bool quick) {
     Experiment experiment = parse_experiment(reproduction.table, reproduction.file);
     experiment.name = reproduction.name;
     Measurements measurements;
-    for (LeftOutScene& scene : leave_out_absent_scenes(experiment, finder))
+    for (LeftOutScene& scene : leave_out_absent_scenes(experiment, scenes))
         measurements.left_out.push_back(std::move(scene.kept));
-    require_effects_in_scenes(experiment, finder);
+    require_effects_in_scenes(experiment, scenes);
     if (quick) make_quick(experiment);
     RunOptions recorded = options;
     recorded.experiment_text = reproduction.text;
-    const RunResults results = run_experiment(experiment, finder, recorded);
+    const RunResults results = run_experiment(experiment, scenes, recorded);
     measurements.started = results.started, measurements.seconds = results.seconds;
     measurements.renderer = results.gl_renderer, measurements.cpu = results.system.cpu;
     measurements.interrupted = results.interrupted;
     measurements.cells = cells_of(results);
     measurements.pictures = results.pictures, measurements.failures = results.failures;
     if (!results.interrupted && asks_for(reproduction.presentation, light_fragments_measure))
-        add_light_fragments(experiment, finder, options.backend, measurements.cells);
+        add_light_fragments(experiment, scenes.finder(), options.backend, measurements.cells);
     return measurements;
 }
 
@@ -190,22 +190,22 @@ Reproduction load_reproduction(const std::string& name_or_path) {
     return reproduction;
 }
 
-DiskUse disk_use(const Reproduction& reproduction, const SceneFinder& finder, bool write_frames, bool quick) {
+DiskUse disk_use(const Reproduction& reproduction, LoadedScenes& scenes, bool write_frames, bool quick) {
     // Walks keep nothing but a table.
     if (!reproduction.drawings.empty() || kind_of(reproduction.table, reproduction.file) != ExperimentKind::comparison)
         return {};
     Experiment experiment = parse_experiment(reproduction.table, reproduction.file);
     if (quick) make_quick(experiment);
-    return disk_use(experiment, finder, write_frames);
+    return disk_use(experiment, scenes, write_frames);
 }
 
-Measurements run_reproduction(const Reproduction& reproduction, const SceneFinder& finder, const RunOptions& options,
+Measurements run_reproduction(const Reproduction& reproduction, LoadedScenes& scenes, const RunOptions& options,
                               bool quick) {
     Measurements measurements;
     if (reproduction.drawings.empty()) {
         const bool is_generation = kind_of(reproduction.table, reproduction.file) == ExperimentKind::generation;
-        measurements = is_generation ? run_generation_experiment(reproduction, finder, options, quick)
-                                     : run_comparison(reproduction, finder, options, quick);
+        measurements = is_generation ? run_generation_experiment(reproduction, scenes.finder(), options, quick)
+                                     : run_comparison(reproduction, scenes, options, quick);
     }
     measurements.experiment = reproduction.name, measurements.command = options.command;
     measurements.quick = quick;

@@ -15,10 +15,10 @@
 #include "experiments/config.h"
 #include "experiments/disk_use.h"
 #include "experiments/drawings.h"
+#include "experiments/loaded_scenes.h"
 #include "experiments/measurements.h"
 #include "experiments/presentation.h"
 #include "experiments/runner.h"
-#include "experiments/scene_finder.h"
 
 namespace plumb {
 
@@ -41,11 +41,11 @@ std::vector<std::string> reproduction_names();
 Reproduction load_reproduction(const std::string& name_or_path);
 
 // The most that it may take, scenes that are not there counted where their views are named.
-DiskUse disk_use(const Reproduction& reproduction, const SceneFinder& finder, bool write_frames, bool quick);
+DiskUse disk_use(const Reproduction& reproduction, LoadedScenes& scenes, bool write_frames, bool quick);
 
 // Renders and measures, unless there are drawings only; the run's own files go to options.output. Optional scenes that
 // are not there are left out. Throws what loading and rendering throw.
-Measurements run_reproduction(const Reproduction& reproduction, const SceneFinder& finder, const RunOptions& options,
+Measurements run_reproduction(const Reproduction& reproduction, LoadedScenes& scenes, const RunOptions& options,
                               bool quick);
 
 struct PresentedReproduction {

@@ -9,20 +9,19 @@
 
 namespace plumb {
 
-// The scenes' contents, each loaded once.
+// The scenes' contents, each worked out once.
 class SceneHashes {
 public:
-    explicit SceneHashes(const SceneFinder& finder) : finder_(finder) {}
     // Of a scene that cannot be loaded: that it is not there.
-    const std::string& of(const std::string& scene);
+    const std::string& of(const std::string& scene, LoadedScenes& scenes);
 
 private:
-    const SceneFinder& finder_;
     std::map<std::string, std::string> hashes_;
 };
 
 // Tells all apart that decides what run_reproduction() measures: the experiment's file, the methods that it takes from
 // others, the scenes as they are here, the OpenGL context asked for, and this very program.
-std::string measuring_key(const Reproduction& reproduction, SceneHashes& scenes, GlBackend backend, bool quick);
+std::string measuring_key(const Reproduction& reproduction, SceneHashes& hashes, LoadedScenes& scenes,
+                          GlBackend backend, bool quick);
 
 }  // namespace plumb

@@ -54,7 +54,7 @@ void run_scene(const Experiment& experiment, const ExperimentScene& entry, const
 
 }  // namespace
 
-RunResults run_experiment(const Experiment& experiment, const SceneFinder& finder, const RunOptions& options) {
+RunResults run_experiment(const Experiment& experiment, LoadedScenes& scenes, const RunOptions& options) {
     const auto start = std::chrono::steady_clock::now();
     RunResults results;
     results.experiment = experiment;
@@ -77,10 +77,11 @@ RunResults run_experiment(const Experiment& experiment, const SceneFinder& finde
         const SceneRunControl control{*context,           cache, cells, progress, options.stop, options.threads,
                                       {from, from + part}};
         try {
-            run_scene(experiment, entry, finder.load(entry.scene), options, control, results);
+            run_scene(experiment, entry, scenes.load(entry.scene), options, control, results);
         } catch (const std::exception& error) {
             results.failures.push_back({entry.scene, error.what()});
         }
+        scenes.release(entry.scene);
     }
     progress.clear();
     results.interrupted = stopped();

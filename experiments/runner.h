@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <string>
 
+#include "experiments/loaded_scenes.h"
 #include "experiments/results.h"
-#include "experiments/scene_finder.h"
 #include "rasterizer/gl_context.h"
 
 namespace plumb {
@@ -22,9 +22,9 @@ struct RunOptions {
     const std::atomic<bool>* stop = nullptr;  // ends the run after the current pass; what was done is written
 };
 
-// Each scene is loaded once. A cell that fails is listed in the results and does not end the run. Writes the files of
-// result_files.h and the pictures and frames into the results folder. Throws GlUnavailable, and ImageError where the
-// results folder cannot be written.
-RunResults run_experiment(const Experiment& experiment, const SceneFinder& finder, const RunOptions& options);
+// Each scene is loaded once, and released when it is done. A cell that fails is listed in the results and does not end
+// the run. Writes the files of result_files.h and the pictures and frames into the results folder. Throws
+// GlUnavailable, and ImageError where the results folder cannot be written.
+RunResults run_experiment(const Experiment& experiment, LoadedScenes& scenes, const RunOptions& options);
 
 }  // namespace plumb

@@ -29,36 +29,40 @@ Experiment small_experiment() {
 
 constexpr std::uintmax_t full = 100 * (1 + 3) * 4, limited = 100 * 3 * 4;  // bytes of one image of every plane
 
+DiskUse disk_use_of(const Experiment& experiment, bool write_frames) {
+    const SceneFinder finder({});
+    LoadedScenes scenes(finder);
+    return disk_use(experiment, scenes, write_frames);
+}
+
 TEST(DiskUse, CountsTruthsWithTheirHalvesAndVarianceForTheCache) {
     Experiment experiment = small_experiment();
-    EXPECT_EQ(disk_use(experiment, SceneFinder({}), true).cache, 2 * 4 * (full + limited));
+    EXPECT_EQ(disk_use_of(experiment, true).cache, 2 * 4 * (full + limited));
     experiment.oracle_layers = {1, 2, 0};
-    EXPECT_EQ(disk_use(experiment, SceneFinder({}), true).cache, 2 * 4 * (full + limited) + 3 * 2 * 4 * full);
+    EXPECT_EQ(disk_use_of(experiment, true).cache, 2 * 4 * (full + limited) + 3 * 2 * 4 * full);
     experiment.oracle_layers.clear();
     experiment.scenes[0].paths.resize(1);
     experiment.scenes[0].paths[0].frames = 6;
-    EXPECT_EQ(disk_use(experiment, SceneFinder({}), true).cache, 2 * 4 * (full + limited) + 6 * 4 * full);
+    EXPECT_EQ(disk_use_of(experiment, true).cache, 2 * 4 * (full + limited) + 6 * 4 * full);
 }
 
 TEST(DiskUse, CountsCellsFramesPicturesAndTheirValuesForTheOutput) {
     Experiment experiment = small_experiment();
     const std::uintmax_t pictures = 2 * 5 * full / 4, values = 2 * 3 * full / 2;  // two views; truth and methods
     const std::uintmax_t without_frames = 2 * 2 * full + pictures + values;
-    EXPECT_EQ(disk_use(experiment, SceneFinder({}), false).output, without_frames);
-    EXPECT_EQ(disk_use(experiment, SceneFinder({}), true).output,
-              without_frames + 2 * (4 * (full + limited) + 2 * full));
+    EXPECT_EQ(disk_use_of(experiment, false).output, without_frames);
+    EXPECT_EQ(disk_use_of(experiment, true).output, without_frames + 2 * (4 * (full + limited) + 2 * full));
     experiment.seeds = 3, experiment.path_tracer_samples = {2};
-    EXPECT_EQ(disk_use(experiment, SceneFinder({}), false).output, 2 * (2 * 3 + 1) * full + pictures + values);
+    EXPECT_EQ(disk_use_of(experiment, false).output, 2 * (2 * 3 + 1) * full + pictures + values);
 }
 
 TEST(DiskUse, LooksAtTheSceneForViewsThatAreNotNamedAndLeavesOutWhatIsNotThere) {
     Experiment experiment = small_experiment();
-    const SceneFinder finder({});
     experiment.scenes[0].views = {};
-    const std::uintmax_t views = finder.load("cornell").cameras.size();
-    EXPECT_EQ(disk_use(experiment, finder, false).cache, views * 4 * (full + limited));
+    const std::uintmax_t views = SceneFinder({}).load("cornell").cameras.size();
+    EXPECT_EQ(disk_use_of(experiment, false).cache, views * 4 * (full + limited));
     experiment.scenes[0].scene = "no_such_scene";
-    EXPECT_EQ(disk_use(experiment, finder, false).cache, 0u);
+    EXPECT_EQ(disk_use_of(experiment, false).cache, 0u);
 }
 
 TEST(DiskUse, SaysWhatIsFreeAndRefusesWhatDoesNotFit) {

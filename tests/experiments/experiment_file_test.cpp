@@ -3,7 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "experiments/scene_finder.h"
+#include "experiments/loaded_scenes.h"
+#include "experiments/view_truths.h"
 #include "tests/message_of.h"
 #include "tests/temporary_folder.h"
 
@@ -158,6 +159,8 @@ TEST(ExperimentFile, AMethodFileMaySetUpOtherStagesButNoLayersForNobody) {
 // And none sets what nothing in its scenes is concerned with, as far as these are part of the program.
 TEST(ExperimentFile, EveryOneThatIsShippedCanBeRead) {
     int read = 0;
+    const SceneFinder finder({});
+    LoadedScenes scenes(finder);
     for (const char* folder : {PLUMBLINE_SOURCE_DIR "/experiments", PLUMBLINE_SOURCE_DIR "/experiments/reproduce"}) {
         for (const auto& entry : std::filesystem::directory_iterator(folder)) {
             const std::filesystem::path& file = entry.path();
@@ -167,7 +170,7 @@ TEST(ExperimentFile, EveryOneThatIsShippedCanBeRead) {
             EXPECT_NO_THROW({
                 const ConfigValue table = read_config(file);
                 if (kind_of(table, file) == ExperimentKind::comparison)
-                    require_effects_in_scenes(parse_experiment(table, file), SceneFinder({}));
+                    require_effects_in_scenes(parse_experiment(table, file), scenes);
             });
             ++read;
         }

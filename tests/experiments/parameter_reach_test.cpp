@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "experiments/experiment_file.h"
+#include "experiments/loaded_scenes.h"
 #include "experiments/method_file.h"
-#include "experiments/scene_finder.h"
 #include "method_where_it_matters.h"
 #include "rasterizer/passes.h"
 #include "scenes/builtin.h"
@@ -194,7 +194,8 @@ TEST(ParameterReach, MethodsThatThePlanesCannotTellApartAreRefused) {
 TEST(ParameterReach, WhatNoSceneOfAnExperimentHasAnythingForIsTold) {
     const SceneFinder finder({});
     const auto check = [&](const std::string& methods, const std::string& scenes) {
-        require_effects_in_scenes(parse_of("\"direct\"", methods, scenes), finder);
+        LoadedScenes loaded(finder);
+        require_effects_in_scenes(parse_of("\"direct\"", methods, scenes), loaded);
     };
     const std::string large_maps = "{ name = \"m\", direct.shadow.map_size = 512 }";
     EXPECT_THAT(message_of<ConfigError>([&] { check(large_maps, "{ scene = \"cornell\" }"); }),

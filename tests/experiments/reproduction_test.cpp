@@ -135,19 +135,36 @@ TEST(Presentation, OriginalsAreDividedByRowsThatThereAre) {
                 HasSubstr("'a' is over no row 'b'"));
 }
 
+TEST(LoadedScenes, AreReadOnceUntilTheyAreReleased) {
+    const TemporaryFolder folder;
+    folder.write("box.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    folder.write("box.toml", "mesh = \"box.obj\"\n");
+    const SceneFinder finder({folder.path});
+    LoadedScenes scenes(finder);
+    const std::string file = (folder.path / "box.toml").string();
+    const Scene& scene = scenes.load(file);
+    std::filesystem::remove(folder.path / "box.obj");
+    EXPECT_EQ(&scenes.load(file), &scene);
+    scenes.release(file);
+    EXPECT_THROW(scenes.load(file), SceneError) << "it is read again";
+    EXPECT_THROW(scenes.load(file), SceneError) << "and what is not there is told each time";
+}
+
 TEST(OptionalScenes, AreLeftOutWithTheReasonUnlessNoneIsLeft) {
     Experiment experiment;
     experiment.file = "trial.toml";
     experiment.scenes.resize(2);
     experiment.scenes[0].scene = "cornell";
     experiment.scenes[1].scene = "nowhere/missing.toml", experiment.scenes[1].optional = true;
-    const std::vector<LeftOutScene> left_out = leave_out_absent_scenes(experiment, SceneFinder({}));
+    const SceneFinder finder({});
+    LoadedScenes scenes(finder);
+    const std::vector<LeftOutScene> left_out = leave_out_absent_scenes(experiment, scenes);
     ASSERT_EQ(left_out.size(), 1u);
     EXPECT_THAT(left_out[0].message, HasSubstr("nowhere/missing.toml: "));
     EXPECT_THAT(left_out[0].kept, HasSubstr("nowhere/missing.toml: "));
     ASSERT_EQ(experiment.scenes.size(), 1u);
     experiment.scenes[0].scene = "nowhere/missing.toml", experiment.scenes[0].optional = true;
-    EXPECT_THAT(message_of<SceneError>([&] { leave_out_absent_scenes(experiment, SceneFinder({})); }),
+    EXPECT_THAT(message_of<SceneError>([&] { leave_out_absent_scenes(experiment, scenes); }),
                 HasSubstr("all of its scenes are optional"));
 }
 
@@ -162,7 +179,9 @@ TEST(OptionalScenes, WhatIsKeptOfThemNamesTheRemedyAndNoFolder) {
     experiment.scenes[1].scene = "dragon", experiment.scenes[2].scene = "lamp.toml";
     experiment.scenes[3].scene = here + "/lamp.toml", experiment.scenes[4].scene = "broken.toml";
     for (std::size_t i = 1; i < 5; ++i) experiment.scenes[i].optional = true;
-    const std::vector<LeftOutScene> left_out = leave_out_absent_scenes(experiment, SceneFinder({folder.path}));
+    const SceneFinder finder({folder.path});
+    LoadedScenes scenes(finder);
+    const std::vector<LeftOutScene> left_out = leave_out_absent_scenes(experiment, scenes);
     ASSERT_EQ(left_out.size(), 4u);
     for (const LeftOutScene& scene : left_out) {
         EXPECT_THAT(scene.message, HasSubstr(here));
