@@ -167,7 +167,9 @@ private:
         run.output = folder / "run";
         run.write_frames = options_.frames;
         run.stop = &interruption_flag();
-        run.command = fmt::format("plumbline reproduce {}{}", name, options_.quick ? " --quick" : "");
+        // What is kept of it is read elsewhere, where the folders of this machine say nothing.
+        run.command = fmt::format("plumbline reproduce {}{}", std::filesystem::path(name).filename().string(),
+                                  options_.quick ? " --quick" : "");
         const DiskUse use = disk_use(reproduction, scenes, run.write_frames, options_.quick);
         if (use.output > 0) fmt::print("{}\n", describe_disk_use(use, run.cache_dir, run.output));
         std::fflush(stdout);

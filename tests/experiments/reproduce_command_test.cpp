@@ -90,6 +90,8 @@ TEST_F(ReproduceCommand, WritesFiguresAsSvgPngAndCsvAndGoesOnBehindAnExperimentT
     }
     EXPECT_THAT(written("README.md"),
                 AllOf(HasSubstr("![Times of each view](figure-1.png)"), HasSubstr("This was a trial run")));
+    EXPECT_THAT(written("README.md"),
+                AllOf(HasSubstr("`plumbline reproduce trial.toml --quick`"), Not(HasSubstr(folder_.path.string()))));
     EXPECT_THAT(text_of(folder_.path / "CLAIMS.md"), HasSubstr("Two layers take longer."));
     EXPECT_THAT(written("run/results.json"), HasSubstr("Which errs less?")) << "the run can be repeated from it";
 }
