@@ -30,5 +30,9 @@ ResultTable make_originals_table(const Originals& originals, const std::vector<C
 // truth, one column per label. Empty where nothing fits. Throws ImageError for a file that cannot be read.
 std::string print_picture_sheet(const Figure& figure, const std::vector<PictureSet>& pictures,
                                 const std::filesystem::path& folder);
+// What was measured of the pictures of such a sheet: one row for each but the truth's, in the order of the sheet, with
+// the error that its error map shows in the last colour. Empty texts where a picture has no cell or the cell no value.
+ResultTable picture_numbers(const Figure& figure, const std::vector<PictureSet>& pictures,
+                            const std::vector<Cell>& cells);
 
 }  // namespace plumb

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <sstream>
 
@@ -6,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "experiments/figures.h"
+#include "experiments/no_value.h"
 #include "experiments/svg_parts.h"
 #include "frames/image_error.h"
 
@@ -33,11 +35,26 @@ std::string read_png(const std::filesystem::path& file) {
     return bytes.str();
 }
 
+// As cells name the truth.
+std::string truth_of(const PictureSet& set) { return set.truth.starts_with("within") ? "limited" : set.truth; }
+
 bool is_wanted(const Figure& figure, const PictureSet& set) {
     Selector where = figure.where;
     where.wanted.erase("method");
-    const std::string truth = set.truth.starts_with("within") ? "limited" : set.truth;
-    return where.matches({set.scene, set.view, set.plane, truth, "", ""});
+    return where.matches({set.scene, set.view, set.plane, truth_of(set), "", ""});
+}
+
+// Columns of the sheet.
+std::vector<std::string> labels_of(const Figure& figure, const std::vector<PictureSet>& pictures) {
+    if (!figure.show.empty()) return figure.show;
+    std::vector<std::string> labels;
+    for (const PictureSet& set : pictures) {
+        if (!is_wanted(figure, set)) continue;
+        for (const Picture& picture : set.images) {
+            if (std::ranges::find(labels, picture.label) == labels.end()) labels.push_back(picture.label);
+        }
+    }
+    return labels;
 }
 
 const Picture* find_picture(const PictureSet& set, const std::string& label, bool is_error) {
@@ -51,10 +68,9 @@ const Picture* find_picture(const PictureSet& set, const std::string& label, boo
 class PictureSheet {
 public:
     PictureSheet(const Figure& figure, const std::vector<PictureSet>& pictures, const std::filesystem::path& folder)
-        : figure_(figure), pictures_(pictures), folder_(folder), labels_(figure.show) {}
+        : figure_(figure), pictures_(pictures), folder_(folder), labels_(labels_of(figure, pictures)) {}
 
     std::string print() {
-        if (labels_.empty()) collect_labels();
         for (const PictureSet& set : pictures_) {
             if (!is_wanted(figure_, set)) continue;
             add_row(set, false);
@@ -71,15 +87,6 @@ public:
 private:
     static double column(std::size_t index) {
         return sheet_gap + static_cast<double>(index) * (picture_width + sheet_gap);
-    }
-
-    void collect_labels() {
-        for (const PictureSet& set : pictures_) {
-            if (!is_wanted(figure_, set)) continue;
-            for (const Picture& picture : set.images) {
-                if (std::ranges::find(labels_, picture.label) == labels_.end()) labels_.push_back(picture.label);
-            }
-        }
     }
 
     void add_row(const PictureSet& set, bool is_error) {
@@ -106,7 +113,7 @@ private:
     const Figure& figure_;
     const std::vector<PictureSet>& pictures_;
     const std::filesystem::path& folder_;
-    std::vector<std::string> labels_;
+    const std::vector<std::string> labels_;
     std::string body_;
     double y_ = sheet_head;
 };
@@ -116,6 +123,34 @@ private:
 std::string print_picture_sheet(const Figure& figure, const std::vector<PictureSet>& pictures,
                                 const std::filesystem::path& folder) {
     return PictureSheet(figure, pictures, folder).print();
+}
+
+ResultTable picture_numbers(const Figure& figure, const std::vector<PictureSet>& pictures,
+                            const std::vector<Cell>& cells) {
+    const std::vector<std::string> measures = {"rmse", "bias", "ssim", "ms"};
+    ResultTable table;
+    table.columns = {"scene", "place", "plane", "truth", "method"};
+    table.names = table.columns.size();
+    table.columns.insert(table.columns.end(), measures.begin(), measures.end());
+    table.columns.emplace_back("last colour of the error map");
+    for (const PictureSet& set : pictures) {
+        if (!is_wanted(figure, set)) continue;
+        for (const std::string& label : labels_of(figure, pictures)) {
+            if (label == "truth" || !find_picture(set, label, false)) continue;
+            const auto cell = std::ranges::find_if(cells, [&](const Cell& candidate) {
+                return candidate.scene == set.scene && candidate.place == set.view && candidate.plane == set.plane &&
+                       candidate.truth == truth_of(set) && candidate.method == label;
+            });
+            std::vector<std::string> row = {set.scene, set.view, set.plane, truth_of(set), label};
+            for (const std::string& measure : measures) {
+                const double value = cell == cells.end() ? no_value : measure_of(*cell, measure);
+                row.push_back(std::isnan(value) ? "" : fmt::format("{:.6g}", value));
+            }
+            row.push_back(find_picture(set, label, true) ? fmt::format("{:.6g}", set.error_scale) : "");
+            table.rows.push_back(std::move(row));
+        }
+    }
+    return table;
 }
 
 }  // namespace plumb

@@ -106,7 +106,9 @@ private:
         write(name + ".svg", svg);
         // Photographs are as large as they are; lines are drawn finely.
         write(name + ".png", rasterise_svg(svg, is_chart ? 2.0 : 1.0));
-        if (is_chart) write(name + ".csv", chart_numbers(figure, measurements_.cells).print_csv());
+        const ResultTable numbers = is_chart ? chart_numbers(figure, measurements_.cells)
+                                             : picture_numbers(figure, measurements_.pictures, measurements_.cells);
+        write(name + ".csv", numbers.print_csv());
     }
 
     void add_originals(std::size_t index) {

@@ -326,6 +326,26 @@ TEST(Figures, PictureSheetsHoldTheirPictures) {
     EXPECT_THAT(png_of(svg), testing::StartsWith(png_signature));
     figure.where.wanted["place"] = {"left"};
     EXPECT_EQ(print_picture_sheet(figure, {set}, folder.path), "");
+    EXPECT_TRUE(picture_numbers(figure, {set}, {}).rows.empty());
+}
+
+TEST(Figures, PictureSheetsHaveTheNumbersOfTheirPictures) {
+    PictureSet set;
+    set.scene = "cornell", set.view = "left", set.plane = "indirect", set.truth = "within 0.3 m", set.error_scale = 0.5;
+    set.images = {{"truth", "truth", "a.png", ""},
+                  {"other", "method", "b.png", ""},
+                  {"taps = 10", "method", "c.png", ""},
+                  {"taps = 10", "error", "d.png", ""},
+                  {"taps = 20", "method", "e.png", ""}};
+    std::vector<Cell> cells = sample_cells();
+    for (Cell& cell : cells) cell.plane = "indirect", cell.truth = "limited";
+    Figure figure;
+    figure.title = "Sheet", figure.kind = FigureKind::pictures, figure.show = {"truth", "taps = 10", "other", "absent"};
+    const ResultTable numbers = picture_numbers(figure, {set}, cells);
+    EXPECT_EQ(numbers.print_csv(),
+              "scene,place,plane,truth,method,rmse,bias,ssim,ms,last colour of the error map\n"
+              "cornell,left,indirect,limited,taps = 10,0.02,,,20,0.5\n"
+              "cornell,left,indirect,limited,other,0.04,,,10,\n");
 }
 
 TEST(Drawings, TapsThatTurnOnceEachLieOnALine) {
