@@ -97,6 +97,7 @@ void read_reference(ConfigReader& reader, Experiment& experiment) {
     experiment.reference.target_error = reference.number("target_error", experiment.reference.target_error, 0.0, 1.0);
     experiment.reference.seed = static_cast<std::uint64_t>(
         reference.integer("seed", static_cast<int>(experiment.reference.seed), 0, std::numeric_limits<int>::max()));
+    experiment.reference.antialias = reference.boolean("antialias", experiment.reference.antialias);
     experiment.reference.most_noise = reference.number("most_noise", experiment.reference.most_noise, 1e-6, 1e6);
     reference.finish();
 }

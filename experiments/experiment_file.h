@@ -43,6 +43,7 @@ struct ExperimentReference {
     int path_samples = 64;      // per pixel of each frame of a path; the target error counts for both
     double target_error = 0.0;  // stop early below this relative error; 0: never
     std::uint64_t seed = 1;
+    bool antialias = false;  // primary rays spread over the pixel, for methods that do so over frames
     // A difference counts as measured only where the mean squared noise of the reference is below this share of it.
     double most_noise = 0.1;
 };

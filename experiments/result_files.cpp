@@ -126,11 +126,10 @@ Json experiment_json(const Experiment& experiment) {
     json["bounces"] = experiment.quantities.bounces;
     json["ao_falloff"] = to_string(experiment.quantities.ao_falloff);
     json["indirect_falloff"] = to_string(experiment.quantities.indirect_falloff);
-    json["reference"] = {{"samples", experiment.reference.samples},
-                         {"path_samples", experiment.reference.path_samples},
-                         {"target_error", experiment.reference.target_error},
-                         {"seed", experiment.reference.seed},
-                         {"most_noise", experiment.reference.most_noise}};
+    json["reference"] = {
+        {"samples", experiment.reference.samples},           {"path_samples", experiment.reference.path_samples},
+        {"target_error", experiment.reference.target_error}, {"seed", experiment.reference.seed},
+        {"antialias", experiment.reference.antialias},       {"most_noise", experiment.reference.most_noise}};
     json["seeds"] = experiment.seeds;
     json["measures"] = {{"flip", to_string(experiment.measures.flip)},
                         {"pixels_per_degree", experiment.measures.pixels_per_degree}};

@@ -19,6 +19,7 @@ ReferenceSettings base_settings(const Experiment& experiment, const ExperimentSc
     settings.samples = experiment.reference.samples;
     settings.target_error = experiment.reference.target_error;
     settings.seed = experiment.reference.seed;
+    settings.antialias = experiment.reference.antialias;
     settings.minimum_separation = scene.minimum_separation;
     return settings;
 }

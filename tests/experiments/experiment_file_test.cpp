@@ -106,6 +106,12 @@ frames = 5
     EXPECT_THAT(failure("frames = 5", "frames = 1"), HasSubstr("e.toml:7: paths[1].frames"));
 }
 
+TEST(ExperimentFile, TheTruthSpreadsItsRaysOverThePixelWhereItSaysSo) {
+    const Experiment plain = parse(valid), spread = parse(valid + "[reference]\nantialias = true\n");
+    EXPECT_FALSE(full_truth_settings(plain, plain.scenes[0]).antialias);
+    EXPECT_TRUE(full_truth_settings(spread, spread.scenes[0]).antialias);
+}
+
 TEST(ExperimentFile, TakesMethodsFromFilesBesideIt) {
     const TemporaryFolder folder;
     Method tuned = load_method("two_layers");
