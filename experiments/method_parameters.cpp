@@ -78,7 +78,7 @@ std::vector<MethodParameter> method_parameters(Method& m) {
         {"gbuffer.separation_unit", choice(m.gbuffer.separation_unit, {"metres", "frustum"})},
         {"gbuffer.guard_band", &m.gbuffer.guard_band, 0, 4096},
         {"gbuffer.depth_mapping", choice(m.gbuffer.depth_mapping, {"reversed", "standard"})},
-        {"gbuffer.position", choice(m.gbuffer.position, {"from_depth", "stored"})},
+        {"gbuffer.position", choice(m.gbuffer.position, {"from_depth", "stored", "stored_16"})},
         {"gbuffer.normal_format",
          choice(m.gbuffer.normal_format, {"oct32", "oct16", "rgb32f", "rgb16f", "rgb10a2", "r11g11b10f", "xy8"})},
         {"gbuffer.radiance_format", choice(m.gbuffer.radiance_format, {"rgba32f", "rgba16f", "r11g11b10f"})},

@@ -31,7 +31,8 @@ GLenum format_of(std::string_view plane, const Scene& scene, const Method& metho
     if (plane == "normal") return texture_format(method.gbuffer.normal_format);
     if (plane == "emission") return emission_format(scene);
     if (plane == "roughness") return GL_R16F;
-    return plane == "displacement" || plane == "camera_position" ? GL_RGBA32F : GL_RGBA16F;
+    if (plane == "camera_position") return method.gbuffer.position == PositionSource::stored ? GL_RGBA32F : GL_RGBA16F;
+    return plane == "displacement" ? GL_RGBA32F : GL_RGBA16F;
 }
 
 bool exists(std::string_view plane, const Method& method) {
@@ -121,7 +122,7 @@ std::string diffuse_albedo_plane(const Scene& scene, const Method& method) {
 }
 
 bool stores_positions(const Method& method) {
-    return method.gbuffer.position == PositionSource::stored && method.gbuffer.source == SourceOfStage::method;
+    return method.gbuffer.position != PositionSource::from_depth && method.gbuffer.source == SourceOfStage::method;
 }
 
 const GlTexture* stored_positions(const PassResources& resources) { return resources.planes.find("camera_position"); }

@@ -13,9 +13,10 @@ enum class SourceOfStage { method, truth };  // truth: the stage's planes are ha
 enum class LayerGeneration { peel, delay, previous, predict, reproject };
 // What sends triangles to the layers of a single pass; a vertex shader needs GL_ARB_shader_viewport_layer_array.
 enum class LayerSelection { geometry_shader, vertex_shader };
-enum class SeparationUnit { metres, frustum };     // frustum: a fraction of the camera's far - near, after Nielsen 2015
-enum class DepthMapping { reversed, standard };    // of the hardware's float depth: 1 to 0, or 0 to 1
-enum class PositionSource { from_depth, stored };  // what the screen-space passes take a point from
+enum class SeparationUnit { metres, frustum };   // frustum: a fraction of the camera's far - near, after Nielsen 2015
+enum class DepthMapping { reversed, standard };  // of the hardware's float depth: 1 to 0, or 0 to 1
+// What the screen-space passes take a point from: depth, or a plane of its own, of floats or (stored_16) half floats.
+enum class PositionSource { from_depth, stored, stored_16 };
 // normal_encoding.h has the formulas; in bytes: 4, 2, 16, 8, 4, 4, 2.
 enum class NormalFormat { oct32, oct16, rgb32f, rgb16f, rgb10a2, r11g11b10f, xy8 };
 enum class RadianceFormat { rgba32f, rgba16f, r11g11b10f };  // in bytes: 16, 8, 4

@@ -183,6 +183,26 @@ TEST(Encodings, StoredPositionsAreThoseOfTheDepth) {
     }
 }
 
+// A half float has 11 bits, so that points a metre away are off by up to a quarter of a millimetre, and by half a
+// millimetre from two metres on: less than the bias, but what is summed is no longer the same.
+TEST(Encodings, PositionsOfHalfFloatsTakeHalfTheBytesAndErr) {
+    GlContext& context = test_context(GlBackend::egl);
+    const Scene scene = make_clutter();
+    Method stored, half;
+    stored.gbuffer.position = PositionSource::stored, half.gbuffer.position = PositionSource::stored_16;
+    const auto a = render(context, scene, stored, {"ao"}), b = render(context, scene, half, {"ao"});
+    EXPECT_EQ(b.bytes, a.bytes - std::size_t{2} * 8u);
+    const auto x = a.frame.plane("ao").values(), y = b.frame.plane("ao").values();
+    double difference = 0.0;
+    std::size_t different = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        different += x[i] != y[i];
+        difference += std::abs(x[i] - y[i]) / static_cast<double>(x.size());
+    }
+    EXPECT_GT(different, x.size() / 4);
+    EXPECT_LT(difference, 0.02) << "the same picture, a little off";
+}
+
 TEST_P(EncodingsTest, RadianceKeepsTheBitsOfItsFormat) {
     const Scene scene = make_cornell();
     Method exact;
