@@ -11,7 +11,7 @@
 //   ms, ms of PASS       median time of the frame and of one pass
 //   bytes per pixel      of the G-buffer
 //   wrong, wrong inside, missing, violations               of second layers (generation.h), as fractions of the pixels
-//   light fragments      fragments that the lights shaded, where they were counted
+//   light fragments, confidence...   counted where they are asked for (counted_measures.h)
 #pragma once
 
 #include <limits>

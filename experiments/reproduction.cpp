@@ -9,9 +9,9 @@
 
 #include "embedded/reproductions.h"
 #include "experiments/build_facts.h"
+#include "experiments/counted_measures.h"
 #include "experiments/experiment_file.h"
 #include "experiments/generation.h"
-#include "experiments/light_fragments.h"
 #include "scenes/scene_error.h"
 
 namespace plumb {
@@ -103,8 +103,11 @@ Measurements run_comparison(const Reproduction& reproduction, LoadedScenes& scen
     measurements.interrupted = results.interrupted;
     measurements.cells = cells_of(results);
     measurements.pictures = results.pictures, measurements.failures = results.failures;
-    if (!results.interrupted && asks_for(reproduction.presentation, light_fragments_measure))
-        add_light_fragments(experiment, scenes.finder(), options.backend, measurements.cells);
+    if (!results.interrupted) {
+        add_counted_measures(
+            experiment, scenes, options.backend,
+            [&](std::string_view measure) { return asks_for(reproduction.presentation, measure); }, measurements.cells);
+    }
     return measurements;
 }
 

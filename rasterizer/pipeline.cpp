@@ -166,6 +166,14 @@ std::size_t Pipeline::gbuffer_bytes_per_pixel() const {
     return bytes;
 }
 
+std::size_t Pipeline::shadow_map_bytes() const {
+    std::size_t bytes = 0;
+    for (const auto& [name, texture] : implementation_->planes.all()) {
+        if (name.starts_with("shadow.")) bytes += texture->bytes();
+    }
+    return bytes;
+}
+
 RasterResult Pipeline::render(const FrameRequest& request) {
     Implementation& self = *implementation_;
     self.run(request);

@@ -60,6 +60,8 @@ public:
     // Bytes of the G-buffer's textures per pixel, over all layers: planes, lit radiance, the hardware's depth and what
     // is kept for the next frame, as far as the wanted planes need them.
     std::size_t gbuffer_bytes_per_pixel() const;
+    // Bytes of all shadow maps together, of lamps and of emissive surfaces.
+    std::size_t shadow_map_bytes() const;
 
 private:
     struct Implementation;

@@ -79,6 +79,20 @@ TEST_P(ShadowAlternativesTest, ParaboloidsNeedTessellation) {
     EXPECT_LE(wrong[2], 4) << "a part in a thousand of 4800 pixels, as for the cube";
 }
 
+TEST_P(ShadowAlternativesTest, ParaboloidsTakeAThirdOfTheMemoryOfACube) {
+    const Scene scene = make_lamp_scene();
+    Method method = plain_method();
+    method.direct.shadow.cube_size = method.direct.shadow.paraboloid_size = 128;
+    Quantities quantities;
+    quantities.planes = {"direct"};
+    const auto bytes = [&] { return Pipeline(context(), scene, method, quantities, 32, 32).shadow_map_bytes(); };
+    EXPECT_EQ(bytes(), 6u * 128u * 128u * 4u);
+    method.direct.shadow.point_map = PointShadowMap::dual_paraboloid;
+    EXPECT_EQ(bytes(), 2u * 128u * 128u * 4u);
+    method.direct.shadow.lamps = false;
+    EXPECT_EQ(bytes(), 0u);
+}
+
 // A spot light too wide for a flat map takes the paraboloids as well.
 TEST_P(ShadowAlternativesTest, WideSpotLightsUseParaboloids) {
     Scene scene = make_shadow_scene();
