@@ -26,9 +26,9 @@ bool is_size(const std::string& name) {
 
 // Formats that are known to take more (method_memory_test.cpp): those of more bytes than by default, and one of fewer,
 // whose planes fit into no other's memory.
-const std::set<std::string> named_values = {"gbuffer.position=stored", "gbuffer.normal_format=rgb16f",
-                                            "gbuffer.normal_format=rgb32f", "gbuffer.radiance_format=rgba32f",
-                                            "gbuffer.radiance_format=r11g11b10f"};
+const std::set<std::string> named_values = {"gbuffer.position=stored",         "gbuffer.position=stored_16",
+                                            "gbuffer.normal_format=rgb16f",    "gbuffer.normal_format=rgb32f",
+                                            "gbuffer.radiance_format=rgba32f", "gbuffer.radiance_format=r11g11b10f"};
 
 // Values that may switch something on or off: all where there are few of them, else the ends of the range.
 std::vector<std::string> values_of(const std::string& name) {

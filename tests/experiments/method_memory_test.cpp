@@ -53,6 +53,9 @@ TEST(MethodMemory, TheSettingsThatTakeMoreAreThoseThatAreNamed) {
     EXPECT_GT(
         mebibytes("gbuffer.position = \"stored\"", [](Method& m) { m.gbuffer.position = PositionSource::stored; }),
         bound);
+    EXPECT_GT(mebibytes("gbuffer.position = \"stored_16\"",
+                        [](Method& m) { m.gbuffer.position = PositionSource::stored_16; }),
+              bound);
     EXPECT_GT(mebibytes("gbuffer.normal_format = \"rgb16f\"",
                         [](Method& m) { m.gbuffer.normal_format = NormalFormat::rgb16f; }),
               bound);
