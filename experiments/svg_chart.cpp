@@ -141,9 +141,15 @@ private:
     std::string draw_axes() const {
         std::string svg;
         if (chart_.categories.empty()) {
+            double free_from = -1e9;  // where the number before ends
             for (const double tick : x_.ticks()) {
+                const std::string number = fmt::format("{:g}", tick);
+                // A digit is as wide as some 6 pixels; numbers that would run into each other are left out.
+                const double half_width = 3.0 * static_cast<double>(number.size()) + 2.0;
                 svg += svg_line(x_.place(tick), y_.from, x_.place(tick), y_.to, faint);
-                svg += svg_text(x_.place(tick), y_.from + 14.0, "middle", fmt::format("{:g}", tick));
+                if (x_.place(tick) - half_width < free_from) continue;
+                svg += svg_text(x_.place(tick), y_.from + 14.0, "middle", number);
+                free_from = x_.place(tick) + half_width;
             }
         } else {
             svg += draw_categories();

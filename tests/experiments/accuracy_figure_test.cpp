@@ -109,6 +109,15 @@ TEST(SvgChart, LinearTicksAreRoundAndFew) {
                 testing::Pointwise(testing::DoubleNear(1e-12), {0., 5., 10., 15., 20., 25., 30.}));
 }
 
+TEST(SvgChart, NumbersOfAnAxisDoNotRunIntoEachOther) {
+    Chart chart{"curve", "", "", {}};
+    chart.series.push_back({"a", "#0072b2", {{0.0005, 1}, {0.1, 2}}, ChartSeries::Style::markers_and_line});
+    const std::string svg = print_svg({chart}, 1, "separations");
+    // Two decades and a third on some 250 pixels: 0.0005 and 0.001 are 33 apart, as long as the two numbers are.
+    EXPECT_THAT(svg, AllOf(HasSubstr(">0.0005<"), testing::Not(HasSubstr(">0.001<")), HasSubstr(">0.002<"),
+                           HasSubstr(">0.1<")));
+}
+
 TEST(SvgChart, BarsStandOnTheirBaseAndWaterfallsFloat) {
     Chart chart{"bars", "", "ms", {}};
     chart.y_scale = ChartScale::linear;
