@@ -10,7 +10,7 @@
 #include <glm/glm.hpp>
 
 #include "pathtracer/lanes.h"
-#include "scenes/bilinear_lookup.h"
+#include "scenes/material.h"
 #include "scenes/texture.h"
 
 namespace plumb {
@@ -25,57 +25,45 @@ public:
     explicit PackedTextures(const std::vector<Texture>& textures);
 
     // As Texture::sample.
-    PLUMBLINE_INLINE glm::vec4 sample(int texture, const glm::vec2& uv) const {
-        const Packed& packed = packed_[texture];
-        if (packed.tiles.empty()) return packed.texture->sample(uv);
-        const float *colour = packed.colour, *alpha = packed.alpha;
-        return BilinearLookup(*packed.texture, uv).mix([&](int x, int y) {
-            const std::uint8_t* code = packed.codes(x, y);
-            return BilinearLookup::Rgba{colour[code[0]], colour[code[1]], colour[code[2]], alpha[code[3]]};
-        });
-    }
+    glm::vec4 sample(int texture, const glm::vec2& uv) const;
 
-    // Starts to fetch what `sample` will read. Inlined, since GCC 12 drops calls of functions that do nothing else.
-    PLUMBLINE_INLINE void fetch(int texture, const glm::vec2& uv) const {
-        const Packed& packed = packed_[texture];
-        if (packed.tiles.empty()) return;
-        const BilinearLookup lookup(*packed.texture, uv);
-        __builtin_prefetch(packed.codes(lookup.x0, lookup.y0)), __builtin_prefetch(packed.codes(lookup.x1, lookup.y0));
-        __builtin_prefetch(packed.codes(lookup.x0, lookup.y1)), __builtin_prefetch(packed.codes(lookup.x1, lookup.y1));
-    }
+    // The same for `count` lanes at once, red, green and blue alone; the lanes of `no_texture` are left as they are.
+    // Most of the time goes by until the first byte of a page is there: all lanes wait for theirs together.
+    void sample(const Lanes<int>& texture, const Lanes<float>& u, const Lanes<float>& v, int count,
+                VectorLanes& colour) const;
 
-    bool is_packed(int texture) const { return !packed_[texture].tiles.empty(); }
+    bool is_packed(int texture) const { return packed_[texture].colour != nullptr; }
 
 private:
     static constexpr int tile_side = 4;
+    struct Texel {
+        std::array<std::uint8_t, 4> codes;  // red, green, blue, alpha
+    };
     struct alignas(64) Tile {
-        std::array<std::uint8_t, 4 * tile_side * tile_side> codes;  // row-major
+        std::array<Texel, tile_side * tile_side> texels;  // row-major
     };
     using Values = std::array<float, 256>;
     struct Packed {
         const Texture* texture = nullptr;
-        std::vector<Tile> tiles;  // row-major; empty: read the texture itself
+        std::size_t first_tile = 0;  // row-major from there
         int tiles_per_row = 0;
-        const float *colour = nullptr, *alpha = nullptr;  // values of the codes
+        const float *colour = nullptr, *alpha = nullptr;  // values of the codes; null: read the texture itself
 
-        // Of a texel: red, green, blue, alpha.
-        PLUMBLINE_INLINE const std::uint8_t* codes(int x, int y) const {
-            return &tiles[tile(x, y)].codes[within_tile(x, y)];
+        std::size_t tile(int x, int y) const {
+            return first_tile + static_cast<std::size_t>(y / tile_side) * tiles_per_row + x / tile_side;
         }
-        PLUMBLINE_INLINE std::uint8_t* codes(int x, int y) { return &tiles[tile(x, y)].codes[within_tile(x, y)]; }
-
-    private:
-        PLUMBLINE_INLINE std::size_t tile(int x, int y) const {
-            return static_cast<std::size_t>(y / tile_side) * tiles_per_row + x / tile_side;
-        }
-        PLUMBLINE_INLINE static std::size_t within_tile(int x, int y) {
-            return 4 * (tile_side * (static_cast<std::size_t>(y) % tile_side) + x % tile_side);
+        static std::size_t within_tile(int x, int y) {
+            return tile_side * (static_cast<std::size_t>(y) % tile_side) + x % tile_side;
         }
     };
     class CodeTable;
-    static void pack(const CodeTable& colour, const CodeTable& alpha, Packed& packed);
+    void pack(const CodeTable& colour, const CodeTable& alpha, const Packed& packed);
+    const Texel& texel(const Packed& packed, int x, int y) const {
+        return tiles_[packed.tile(x, y)].texels[Packed::within_tile(x, y)];
+    }
 
     std::vector<Packed> packed_;
+    std::vector<Tile> tiles_;  // of all textures
     // Shared by all textures that they have room for, so that they stay in the nearest cache. Their places are kept.
     std::list<Values> values_;
 };

@@ -197,23 +197,27 @@ void TracedScene::gather_moving_corners(const RayBatch& rays, const HitBatch& hi
     }
 }
 
-// Two rounds: the first starts to fetch the texels of all points, for hardly any of them is in a cache.
 void TracedScene::look_up_textures(const HitBatch& hits, const MetRays& met, const CornerLanes& corners,
                                    const Lanes<float>& lit, SurfaceLanes& points) const {
+    const auto look_up = [&](int Material::*texture, VectorLanes& values) {
+        Lanes<int> textures;
+        for (int i = 0; i < met.count; ++i) textures[i] = parts_[hits.instance[met.ray[i]]].material->*texture;
+        textures_.sample(textures, corners.texture_u, corners.texture_v, met.count, values);
+    };
+    VectorLanes base_colour, metallic_roughness, emission;
+    look_up(&Material::base_colour_texture, base_colour);
+    look_up(&Material::metallic_roughness_texture, metallic_roughness);
+    look_up(&Material::emission_texture, emission);
     for (int i = 0; i < met.count; ++i) {
         const Part& part = parts_[hits.instance[met.ray[i]]];
         if (!part.has_textures) continue;
-        const glm::vec2 uv(corners.texture_u[i], corners.texture_v[i]);
         const Material& material = *part.material;
-        for (const int texture :
-             {material.base_colour_texture, material.metallic_roughness_texture, material.emission_texture}) {
-            if (texture != no_texture) textures_.fetch(texture, uv);
-        }
-    }
-    for (int i = 0; i < met.count; ++i) {
-        const Part& part = parts_[hits.instance[met.ray[i]]];
-        if (!part.has_textures) continue;
-        const SurfaceSample sample = part.sample({corners.texture_u[i], corners.texture_v[i]});
+        const SurfaceSample sample = sample_surface(material, [&](int texture) {
+            const VectorLanes& values = texture == material.base_colour_texture          ? base_colour
+                                        : texture == material.metallic_roughness_texture ? metallic_roughness
+                                                                                         : emission;
+            return glm::vec4(values.get(i), 1.0f);
+        });
         points.albedo.set(i, lit[i] * sample.albedo), points.emission.set(i, lit[i] * sample.emission);
     }
 }

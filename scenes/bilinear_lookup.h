@@ -30,9 +30,13 @@ struct BilinearLookup {
     // `texel(x, y)` is an Rgba.
     template <typename Texel>
     glm::vec4 mix(const Texel& texel) const {
+        return mix(right, lower, [&](int column, int row) { return texel(column ? x1 : x0, row ? y1 : y0); });
+    }
+    // `texel(column, row)` is the Rgba of one of the four, 0 or 1 each.
+    template <typename Texel>
+    static glm::vec4 mix(float right, float lower, const Texel& texel) {
         const auto mixed = [](Rgba from, Rgba to, float share) { return from * (1.0f - share) + to * share; };
-        const Rgba value =
-            mixed(mixed(texel(x0, y0), texel(x1, y0), right), mixed(texel(x0, y1), texel(x1, y1), right), lower);
+        const Rgba value = mixed(mixed(texel(0, 0), texel(1, 0), right), mixed(texel(0, 1), texel(1, 1), right), lower);
         return {value[0], value[1], value[2], value[3]};
     }
 

@@ -103,6 +103,34 @@ TEST(PackedTextures, WhatHasTooManyValuesIsReadAsItIs) {
     for (int i = 0; i < 3; ++i) expect_same_samples(packed, i, textures[i]);
 }
 
+// Many lanes, some of a packed texture, some of another one, some of none: those keep what they have.
+TEST(PackedTextures, LanesGetWhatEachGetsAlone) {
+    const std::vector<Texture> textures = {
+        random_texture(16, 8, 256, TextureWrap::repeat, TextureWrap::mirror, 9),
+        random_texture(40, 30, 1000, TextureWrap::clamp, TextureWrap::repeat, 10),
+        random_texture(13, 7, 150, TextureWrap::mirror, TextureWrap::clamp, 11),
+    };
+    const PackedTextures packed(textures);
+    std::mt19937 random(12);
+    std::uniform_int_distribution<int> any(-1, 2);
+    static_assert(no_texture == -1);
+    std::uniform_real_distribution<float> anywhere(-4.0f, 5.0f);
+    const glm::vec3 before(-1.0f, -2.0f, -3.0f);
+    for (const int count : {0, 1, 77, most_lanes}) {
+        Lanes<int> texture;
+        Lanes<float> u, v;
+        VectorLanes colour;
+        colour.fill(0, most_lanes, before);
+        for (int i = 0; i < most_lanes; ++i) texture[i] = any(random), u[i] = anywhere(random), v[i] = anywhere(random);
+        packed.sample(texture, u, v, count, colour);
+        for (int i = 0; i < most_lanes; ++i) {
+            const bool is_asked = i < count && texture[i] != no_texture;
+            const glm::vec3 expected = is_asked ? glm::vec3(packed.sample(texture[i], {u[i], v[i]})) : before;
+            EXPECT_EQ(colour.get(i), expected) << "lane " << i << " of " << count << ", texture " << texture[i];
+        }
+    }
+}
+
 // Tables of values are shared while they have room: 150 and 150 others need two.
 TEST(PackedTextures, WithOtherValuesEachDoNotDisturbEachOther) {
     std::vector<Texture> textures;
