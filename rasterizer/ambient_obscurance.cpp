@@ -63,6 +63,18 @@ void require_sound(const Method& method, const Quantities& quantities) {
     require_points_at_taps("ao", settings.use_mip_chain, settings.mip_points, method);
 }
 
+// Of a surface that faces the camera the product is that of a pixel's sides a metre away.
+void require_frontal_normals(const View& view) {
+    const float side = 1.0f / view.pixels_per_metre(), least_pixels = 1.0f / std::sqrt(longest_g3d_normal);
+    if (side * side <= longest_g3d_normal) return;
+    const float lines = static_cast<float>(view.height()) * least_pixels / view.pixels_per_metre();
+    throw MethodError(fmt::format(
+        "ao.normals is \"g3d_demo\", whose limit is made for images of some 700 lines: of this view's {} "
+        "lines (guard band included) it rejects every normal, even of surfaces that face the camera; render "
+        "{:.0f} lines or more, or set ao.normals to \"face\" or \"interpolated\"",
+        view.height(), std::ceil(lines)));
+}
+
 std::string in_capitals(std::string_view name) {
     std::string result;
     for (const char c : name) result += static_cast<char>(c >= 'a' && c <= 'z' ? c - 'a' + 'A' : c);
@@ -127,7 +139,8 @@ std::string_view to_string(AmbientObscuranceEstimator estimator) {
 }
 
 AmbientObscurancePass::AmbientObscurancePass(const PassResources& resources)
-    : depth_(resources.planes.get(depth_plane(resources.method))),
+    : normals_(resources.method.ao.normals),
+      depth_(resources.planes.get(depth_plane(resources.method))),
       normal_(reads_normals(resources.method) ? &resources.planes.get("normal") : nullptr),
       position_(stored_positions(resources)),
       spiral_(resources.context, resources.method.ao.samples),
@@ -135,7 +148,8 @@ AmbientObscurancePass::AmbientObscurancePass(const PassResources& resources)
       target_(make_obscurance_target(resources)),
       area_(resources, glm::ivec2(blur_reach(resources.method.ao.blur)), guard_band_reader) {}
 
-void AmbientObscurancePass::execute(const PassFrame&) {
+void AmbientObscurancePass::execute(const PassFrame& frame) {
+    if (normals_ == ObscuranceNormals::g3d_demo) require_frontal_normals(frame.view);
     depth_.bind(0);
     if (normal_) normal_->bind(1);
     if (position_) position_->bind(stored_position_unit);

@@ -46,7 +46,8 @@
 //               finest derivatives have them. They reach across edges, where the product is long: beyond 6e-5 z^2 all
 //               is visible, and so it is where one of the pixels shows nothing. The length is that of images of some
 //               700 lines; a frontal surface has (2 tan(fov / 2) / lines)^2 z^2, so that coarser images lose slanted
-//               surfaces, and then all.
+//               surfaces, and then all. Where frontal ones are lost the pass throws; a probe's faces, which have few
+//               lines, take the surfaces' own normals in their place.
 #pragma once
 
 #include "rasterizer/bilateral_blur.h"
@@ -68,9 +69,11 @@ class AmbientObscurancePass final : public Pass {
 public:
     // Throws MethodError for an infinite radius and other parameters out of range.
     explicit AmbientObscurancePass(const PassResources& resources);
+    // Throws MethodError where the normals of g3d_demo are so in name only (see above).
     void execute(const PassFrame& frame) override;
 
 private:
+    ObscuranceNormals normals_;
     const GlTexture& depth_;
     const GlTexture* normal_;    // where the normals of faces do not serve
     const GlTexture* position_;  // where positions are stored

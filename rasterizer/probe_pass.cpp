@@ -44,6 +44,8 @@ Method method_of_probe_faces(const Method& method) {
     faces.gbuffer.layer_selection = LayerSelection::geometry_shader;
     faces.gbuffer.guard_band = 0;
     faces.gbuffer.layers = faces.ao.layers = 1;
+    // Of so few lines it would reject every one.
+    if (method.ao.normals == ObscuranceNormals::g3d_demo) faces.ao.normals = ObscuranceNormals::interpolated;
     faces.direct.source = SourceOfStage::method;
     faces.radiosity.enabled = faces.reflections.enabled = false;
     // Every face is a first frame, of which these leave each bit as it is; they only want a second layer, and memory.

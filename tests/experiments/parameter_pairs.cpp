@@ -98,13 +98,16 @@ void for_each_value(const Method& start, const std::string& name, const Use& use
 
 // Null where a pipeline refuses the method.
 std::optional<Frame> try_to_render(GlContext& context, const Scene& scene, const Method& method,
-                                   const std::vector<std::string>& planes) {
+                                   const std::vector<std::string>& planes, const PictureSize& size) {
     try {
-        return render_busy_frames(context, scene, method, planes);
+        return render_busy_frames(context, scene, method, planes, size);
     } catch (const std::exception&) {
         return std::nullopt;
     }
 }
+
+// Whether it refuses small pictures.
+bool wants_many_lines(const Method& method) { return method.ao.normals == ObscuranceNormals::g3d_demo; }
 
 }  // namespace
 
@@ -143,21 +146,42 @@ std::vector<ParameterPair> pairs_with_planes() {
 PairVerdicts judge_pairs(GlContext& context, const Scene& scene, const std::vector<ParameterPair>& pairs,
                          std::size_t first, std::size_t stride) {
     PairVerdicts verdicts;
-    std::map<std::string, std::optional<Frame>> rendered;
+    std::map<std::string, std::optional<Frame>> rendered;  // small pictures
     for (std::size_t i = first; i < pairs.size(); i += stride) {
         const ParameterPair& pair = pairs[i];
         if (is_excepted(pair)) continue;
-        const std::string key = fmt::format("{:016x} {}", method_hash(pair.method), pair.planes.front());
-        if (!rendered.contains(key)) rendered[key] = try_to_render(context, scene, pair.method, pair.planes);
-        const std::optional<Frame>& before = rendered.at(key);
-        if (!before) continue;
         Method changed = pair.method;
         use_another_value(changed, pair.name);
-        const std::optional<Frame> after = try_to_render(context, scene, changed, pair.planes);
-        if (!after) continue;
+        const auto render = [&](const Method& method, const PictureSize& size) {
+            return try_to_render(context, scene, method, pair.planes, size);
+        };
+        // Null where a picture is refused.
+        const auto same_in_larger_ones = [&]() -> std::optional<bool> {
+            const std::optional<Frame> before = render(pair.method, larger_picture),
+                                       after = render(changed, larger_picture);
+            if (!before || !after) return std::nullopt;
+            return same_pixels(*before, *after, pair.planes);
+        };
+        const auto same_in_small_ones = [&]() -> std::optional<bool> {
+            const std::string key = fmt::format("{:016x} {}", method_hash(pair.method), pair.planes.front());
+            if (!rendered.contains(key)) rendered[key] = render(pair.method, {});
+            const std::optional<Frame>& before = rendered.at(key);
+            if (!before) return std::nullopt;
+            const std::optional<Frame> after = render(changed, {});
+            if (!after) return std::nullopt;
+            return same_pixels(*before, *after, pair.planes);
+        };
         // What turns a stage off is without effect where that stage, on, would have none.
         const std::string reason = reason_without_effect(pair.method, pair.name, &pair.planes, &scene);
-        const bool same = same_pixels(*before, *after, pair.planes);
+        std::optional<bool> found;
+        if (wants_many_lines(pair.method) || wants_many_lines(changed)) {
+            found = same_in_larger_ones();
+        } else {
+            found = same_in_small_ones();
+            if (found && *found && reason.empty()) found = same_in_larger_ones();
+        }
+        if (!found) continue;
+        const bool same = *found;
         const std::string text = fmt::format("{} beside {}", pair.name, pair.beside);
         if (same && reason.empty()) verdicts.silent.push_back(text);
         if (!same && !reason.empty()) verdicts.slander.push_back(fmt::format("{}: {}", text, reason));

@@ -49,12 +49,48 @@ TEST_P(ObscuranceSourcesTest, NormalsByDerivativesAgreeWithTheirCounterpartAndAr
     }
 }
 
-TEST_P(ObscuranceSourcesTest, AtFewLinesTheSourcesLimitRejectsEveryNormal) {
-    const counterpart::Layers layers = layers_of_patches(slanted_view(60, 45), obscuring_room());
-    ScreenSpaceRun run(context(), layers, unblurred({.normals = ObscuranceNormals::g3d_demo}),
-                       ambient_visibility_within(1.0f));
-    const Image ao = run.render("ao", 1);
-    for (const float value : ao.values()) ASSERT_EQ(value, 1.0f);
+// At so few lines that nothing has a normal, the pass says so, and how many lines would do.
+TEST_P(ObscuranceSourcesTest, AtFewLinesTheSourcesLimitWouldRejectEveryNormal) {
+    const std::vector<Patch> wall = {{{-40.0f, -30.0f, -6.0f}, {80.0f, 0.0f, 0.0f}, {0.0f, 60.0f, 0.0f}}};
+    const auto image = [&](int lines) {
+        // Square, and looking at the wall: a pixel's side is 2 tan(0.45) / lines of the distance.
+        const View view(Camera::look_at("front", {0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, -1.0f}, 0.9f), lines, lines);
+        const counterpart::Layers layers = layers_of_patches(view, wall);
+        ScreenSpaceRun run(context(), layers, unblurred({.samples = 1, .normals = ObscuranceNormals::g3d_demo}),
+                           ambient_visibility_within(1.0f));
+        int kept = 0;
+        for (int y = 0; y < lines; ++y) {
+            for (int x = 0; x < lines; ++x)
+                kept += counterpart::derivative_normal(layers, {x, y}).normal != glm::dvec3(0.0);
+        }
+        run.render("ao", 1);
+        return kept;
+    };
+    // 2 tan(0.45) / sqrt(6e-5) = 124.7
+    EXPECT_GT(image(126), 126 * 126 / 2);
+    try {
+        image(124);
+        ADD_FAILURE() << "no error";
+    } catch (const MethodError& error) {
+        EXPECT_THAT(error.what(), testing::HasSubstr("render 125 lines or more"));
+    }
+}
+
+TEST_P(ObscuranceSourcesTest, AProbesFewLinesTakeTheSurfacesNormals) {
+    Scene scene = make_cornell();
+    scene.environment.radiance = glm::vec3(1.0f);  // which ambient visibility dims
+    const View view(scene.cameras.front(), 160, 160);
+    const auto irradiance = [&](ObscuranceNormals normals) {
+        Method method;
+        method.ao.normals = normals;
+        method.probe = {.y = 0.3f, .size = 32};
+        method.radiosity.fill = AmbientSource::probe;
+        method.direct.emitters = false;
+        Pipeline pipeline(context(), scene, method, {.planes = {"irradiance"}, .ao_radius = 0.3f}, 160, 160);
+        return pipeline.render(view).frame.plane("irradiance");
+    };
+    const Image with_g3d = irradiance(ObscuranceNormals::g3d_demo);
+    EXPECT_GT(*std::ranges::max_element(with_g3d.values()), 0.0f);
 }
 
 // What the source's points cost: the depth of another pixel lifts taps off a slanted surface.
