@@ -40,7 +40,7 @@ void add_reflections(std::vector<MethodParameter>& parameters, ReflectionSetting
                           {"reflections.first_step", &reflections.first_step, 0.25, 64},
                           {"reflections.max_steps", &reflections.max_steps, 1, 16384},
                           {"reflections.refinement_steps", &reflections.refinement_steps, 0, 16},
-                          {"reflections.hit", choice(reflections.hit, {"behind", "mara2016"})},
+                          {"reflections.hit", choice(reflections.hit, {"behind", "mara2016", "crossed"})},
                           {"reflections.thickness", &reflections.thickness, 0, 1e6},
                           {"reflections.max_distance", &reflections.max_distance, 1e-6, no_limit},
                           {"reflections.bias", &reflections.bias, 0, 1e3},

@@ -215,8 +215,9 @@ struct RadiositySettings {
 // by the lobe's footprint; or rays spread over it.
 enum class ReflectionRoughness { mirror, mip, samples };
 // Where a ray hits a layer: up to `thickness` behind it, as a surface that thick would be; or, as Mara et al. 2016 have
-// it, no farther than that from it, on either side.
-enum class ReflectionHit { behind, mara2016 };
+// it, no farther than that from it, on either side; or behind it, and also where it went from before the layer to
+// behind it, however far, between two looks.
+enum class ReflectionHit { behind, mara2016, crossed };
 // What is reflected where a ray finds nothing or leaves the view.
 enum class ReflectionFallback { none, environment, probe };
 

@@ -104,6 +104,7 @@ ShaderDefines shader_defines(const PassResources& resources, bool lamps, bool fa
         {"MAX_STEPS", std::to_string(settings.max_steps)},
         {"REFINEMENT_STEPS", std::to_string(settings.refinement_steps)},
         {"HIT_IN_FRONT", settings.hit == ReflectionHit::mara2016 ? "1" : "0"},
+        {"HIT_ACROSS", settings.hit == ReflectionHit::crossed ? "1" : "0"},
         {"BIAS", shader_literal(settings.bias)},
         {"TEST_HIT_NORMAL", settings.test_hit_normal ? "1" : "0"},
         {"MAX_DISTANCE", shader_literal(longest)},

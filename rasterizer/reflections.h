@@ -5,11 +5,16 @@
 // `first_step` pixels (of the axis that it covers more pixels of) from X and then every `step` pixels, `max_steps`
 // times at most. Between two looks its depth covers an interval; it passes behind a layer where that interval meets [z,
 // z + thickness], z the layer's depth in the pixel of the second look; or, with hit = mara2016, comes near it where the
-// interval meets [z - thickness, z + thickness]. The stretch is then halved `refinement_steps` times by the same
-// question. What is found, the point Y in a pixel of the layer, is hit if it rises more than `bias`
-// above X's tangent plane (the surface does not reflect itself) and, with test_hit_normal, faces the ray: what is seen
-// of a surface from the front says nothing about its back. Else the ray goes on. Where both layers are passed in one
-// step the first wins.
+// interval meets [z - thickness, z + thickness]; or, with hit = crossed, also passes through it where the ray was no
+// deeper at the first look than the layer in that pixel, and is no less deep at the second look than the layer there.
+// The stretch is then halved `refinement_steps` times by the same question. What is found, the point Y in a pixel of
+// the layer, is hit if it rises more than `bias` above X's tangent plane (the surface does not reflect itself) and,
+// with test_hit_normal, faces the ray: what is seen of a surface from the front says nothing about its back. Else the
+// ray goes on. Where both layers are passed in one step the first wins.
+//   Which hit: `behind` misses a surface so slanted that its depth changes by more than the thickness from a pixel to
+//   the next, and leaves stripes in what a floor reflects of a ceiling seen at a flat angle. `crossed` takes what two
+//   neighbouring pixels show for one surface, and finds it; where they show an object and what lies behind it, rays
+//   that pass behind the object end on its silhouette.
 //   Sources: Mara et al. 2016, "Deep G-Buffers for Stable Global Illumination Approximation": a ray hits where it comes
 //   within the separation of either layer, before or behind it (which thickens silhouettes and lets rays end before
 //   they reach what they would hit), else the environment answers; McGuire, Mara 2014, "Efficient GPU Screen-Space Ray

@@ -1,7 +1,8 @@
 // A ray through the layers of the G-buffer; reflections.h says how it is traced.
 //
 // Defines: LAYERS (1, 2), STEP and FIRST_STEP (pixels), MAX_STEPS, REFINEMENT_STEPS, HIT_IN_FRONT (0, 1: within the
-// thickness before a surface, too), BIAS (metres), TEST_HIT_NORMAL (0, 1), MAX_DISTANCE (metres).
+// thickness before a surface, too), HIT_ACROSS (0, 1: between two looks, too), BIAS (metres), TEST_HIT_NORMAL (0, 1),
+// MAX_DISTANCE (metres).
 #include "depth_mip_chain.glsl"
 #include "normal_encoding.glsl"
 
@@ -71,6 +72,21 @@ bool meets(float one_depth, float other_depth, ivec2 pixel, int layer) {
     return max(one_depth, other_depth) >= front && min(one_depth, other_depth) <= surface + thickness;
 }
 
+// In its own pixel the ray starts at the very depth of the surface: rounding would answer.
+bool is_own(ScreenLine line, ivec2 pixel, int layer) { return layer == 0 && pixel == ivec2(line.start); }
+
+// The same of the stretch from `before` on to where the ray has come to `depth_now` in pixel `at`.
+bool meets_on_the_way(ScreenLine line, float before, float depth_before, float depth_now, ivec2 at, int layer) {
+    bool met = meets(depth_before, depth_now, at, layer);
+#if HIT_ACROSS
+    ivec2 from = pixel_at(line, before);
+    float surface_before = texelFetch(depth, ivec3(from, layer), 0).r;
+    bool was_in_front = !is_background(surface_before) && depth_before <= surface_before && !is_own(line, from, layer);
+    met = met || (was_in_front && depth_now >= texelFetch(depth, ivec3(at, layer), 0).r);
+#endif
+    return met;
+}
+
 // Narrows the stretch before `along` in which the ray met the layer; tells whether it hit it.
 bool refine(ScreenLine line, float before, float along, int layer, vec3 origin, vec3 direction, vec3 camera_normal,
             out RayHit hit) {
@@ -79,9 +95,7 @@ bool refine(ScreenLine line, float before, float along, int layer, vec3 origin, 
         float middle = 0.5 * (before + along);
         float depth_middle = depth_at(line, middle);
         ivec2 at = pixel_at(line, middle);
-        // In its own pixel the ray starts at the very depth of the surface: rounding would answer.
-        bool own = layer == 0 && at == ivec2(line.start);
-        if (!own && meets(depth_before, depth_middle, at, layer)) {
+        if (!is_own(line, at, layer) && meets_on_the_way(line, before, depth_before, depth_middle, at, layer)) {
             along = middle;
         } else {
             before = middle;
@@ -114,7 +128,7 @@ RayHit trace(ivec2 pixel, vec3 origin, vec3 camera_normal, vec3 direction) {
         float depth_now = depth_at(line, along);
         ivec2 at = pixel_at(line, along);
         for (int layer = 0; layer < LAYERS; ++layer) {
-            if (meets(depth_before, depth_now, at, layer) &&
+            if (meets_on_the_way(line, before, depth_before, depth_now, at, layer) &&
                 refine(line, before, along, layer, origin, direction, camera_normal, hit)) {
                 return hit;
             }

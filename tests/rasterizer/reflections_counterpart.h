@@ -196,19 +196,34 @@ private:
             result.ambiguous |= std::abs(low - surface - settings.thickness) < doubt && high >= front - doubt;
             return high >= front && low <= surface + settings.thickness;
         };
+        // Or, with hit = crossed, got from one side of the layer to the other.
+        const auto meets_between = [&](double from, double to, int layer) {
+            bool met = meets(depth(from), depth(to), pixel_at(to), layer);
+            const Pixel first = pixel_at(from);
+            if (settings.hit != ReflectionHit::crossed || (layer == 0 && first == pixel)) return met;
+            const double surface_before = depth_at(layers_, layer, first),
+                         surface = depth_at(layers_, layer, pixel_at(to));
+            if (surface_before == 0.0 || surface == 0.0) return met;
+            const double in_front = surface_before - depth(from), behind = depth(to) - surface;
+            const bool open_before = std::abs(in_front) < 2e-5 * surface_before,
+                       open_now = std::abs(behind) < 2e-5 * surface;
+            result.ambiguous |= !met && ((open_before && (behind >= 0.0 || open_now)) || (open_now && in_front >= 0.0));
+            met = met || (in_front >= 0.0 && behind >= 0.0);
+            return met;
+        };
         double before = 0.0;
         for (int i = 0; i < settings.max_steps; ++i) {
             const double along = settings.first_step + static_cast<double>(i) * settings.step;
             result.ambiguous |= std::abs(along - length) < 1e-3;
             if (along > length) break;
             for (int layer = 0; layer < settings.layers; ++layer) {
-                if (!meets(depth(before), depth(along), pixel_at(along), layer)) continue;
+                if (!meets_between(before, along, layer)) continue;
                 double low = before, high = along;
                 for (int k = 0; k < settings.refinement_steps; ++k) {
                     const double middle = 0.5 * (low + high);
                     const Pixel at = pixel_at(middle);
                     const bool own = layer == 0 && at == pixel;
-                    if (!own && meets(depth(low), depth(middle), at, layer)) {
+                    if (!own && meets_between(low, middle, layer)) {
                         high = middle;
                     } else {
                         low = middle;

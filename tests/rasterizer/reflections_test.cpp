@@ -80,6 +80,9 @@ const std::vector<Case> cases = {
     {"the paper's, before and behind", {.roughness = mirror, .hit = ReflectionHit::mara2016}},
     {"the paper's, thick, one layer",
      {.roughness = mirror, .layers = 1, .step = 1.0f, .hit = ReflectionHit::mara2016, .thickness = 0.4f}},
+    {"between two looks, too", {.roughness = mirror, .hit = ReflectionHit::crossed}},
+    {"between two looks, too, one layer, unrefined",
+     {.roughness = mirror, .layers = 1, .step = 1.0f, .refinement_steps = 0, .hit = ReflectionHit::crossed}},
     {"short rays", {.roughness = mirror, .max_distance = 0.8f, .fallback = ReflectionFallback::environment}},
     {"backs are hit", {.roughness = mirror, .test_hit_normal = false}},
     {"small bias, no fade", {.roughness = mirror, .bias = 0.001f, .border_fade = 0}},
@@ -321,6 +324,39 @@ TEST_P(ReflectionsTest, ThePapersRuleAlsoHitsWhatARayPassesBefore) {
     for (std::size_t i = 0; i < behind.size(); ++i) gained += either[i] > behind[i], lost += either[i] < behind[i];
     EXPECT_GT(gained, 10);
     EXPECT_LT(lost, gained / 2) << "a wider range of depths ends the halving earlier, at times on what cannot be hit";
+}
+
+// A floor mirrors a low ceiling whose depth changes by 0.06 to 1 m from row to row, with surfaces 0.1 m thick.
+TEST_P(ReflectionsTest, ASlantedCeilingIsReflectedWithoutStripesWhereRaysThatCrossItHitIt) {
+    const View view(Camera::look_at("level", {0.0f, 1.0f, 0.0f}, {0.0f, 1.0f, -1.0f}, 0.9f), 96, 144);
+    counterpart::Layers layers =
+        layers_of_patches(view, {{{-40, -1, 1}, {80, 0, 0}, {0, 0, -13}}, {{-40, 1, 1}, {80, 0, 0}, {0, 0, -13}}});
+    for (int y = 0; y < view.height(); ++y) {
+        for (int x = 0; x < view.width(); ++x) {
+            const bool ceiling = layers.normal[0].at(x, y, 1) < 0.0f;
+            for (int c = 0; c < 3; ++c) layers.radiance[0].at(x, y, c) = ceiling ? 1.0f : 0.0f;
+        }
+    }
+    const counterpart::Gloss gloss = even_gloss(view, glm::vec3(1.0f), 1.0f, 0.0f);
+    // Rows of the floor without a reflection, between two that have one: how many there are down the middle. What lies
+    // less than 3.3 m away mirrors what is less than 9.9 m away, well before the ceiling ends.
+    const auto stripes = [&](ReflectionHit hit) {
+        ReflectionRun run(context(), layers, gloss,
+                          method_of({.roughness = mirror, .layers = 1, .hit = hit, .border_fade = 0}),
+                          reflection_alone);
+        const Image reflection = run.render();
+        int dark = 0, lost = 0, bright = 0;
+        for (int y = view.height() - 1; y > view.height() / 2; --y) {
+            if (layers.depth[0].at(48, y) > 3.3f || layers.depth[0].at(48, y) == 0.0f) continue;
+            const bool found = reflection.at(48, y) > 0.5f;
+            if (found && bright++ > 0) lost += dark;
+            dark = found ? 0 : dark + 1;
+        }
+        EXPECT_GT(bright, 8);
+        return lost;
+    };
+    EXPECT_GT(stripes(ReflectionHit::behind), 3);
+    EXPECT_EQ(stripes(ReflectionHit::crossed), 0);
 }
 
 TEST_P(ReflectionsTest, HitsFadeTowardsTheBorder) {
