@@ -13,8 +13,13 @@ namespace plumb::counterpart {
 struct Visibility {
     double mean = 0.0;  // of the taps' obscurance, before the estimator's curve
     double visibility = 1.0;
+    double least = 1.0, most = 1.0;  // as far as the rounding of points moves it
     bool ambiguous = false;
 };
+
+// How far float points are from where they should be, in parts of their distance from the camera: half a unit in the
+// last place, 6e-8, of each of three coordinates.
+constexpr double point_rounding = 1e-7;
 
 // The nearer in depth of a pixel's neighbours along an axis; false where neither shows anything.
 inline bool step_along(const Layers& layers, Pixel pixel, int dx, int dy, glm::dvec3& step) {
@@ -90,11 +95,12 @@ inline Visibility visibility_by_taps(const Layers& layers, const AmbientObscuran
         normal = face.normal;
         result.ambiguous |= face.ambiguous;
     }
-    double sum = 0.0;
+    // Of heights over the tangent plane that are as low as rounding may make them, as they are, and as high.
+    glm::dvec3 sum(0.0);
     int hits = 0;
     for (const Tap& tap : taps) {
         if (!inside(layers, tap.pixel)) continue;
-        double largest = 0.0, both = 0.0;
+        glm::dvec3 largest(0.0), both(0.0);
         for (int layer = 0; layer < settings.layers; ++layer) {
             if (depth_at(layers, layer, tap.source) == 0.0) continue;
             const glm::dvec3 v = point_of_tap(layers, layer, tap, settings.mip_points) - centre;
@@ -102,27 +108,31 @@ inline Visibility visibility_by_taps(const Layers& layers, const AmbientObscuran
             const double weight = falloff_of_square(quantities.ao_falloff, relative_square);
             // The hard falloff jumps at the radius.
             result.ambiguous |= quantities.ao_falloff == Falloff::hard && std::abs(relative_square - 1.0) < 1e-5;
-            double obscurance = 0.0;
+            const double off = point_rounding * (depth + depth_at(layers, layer, tap.source));
+            const glm::dvec3 heights(vn - off, vn, vn + off);
+            const auto above = [&](double bias) { return glm::max(heights - bias, glm::dvec3(0.0)); };
+            glm::dvec3 obscurance(0.0);
             switch (estimator) {
                 case Estimator::mara2016:
                 case Estimator::g3d_demo:
                 case Estimator::linear:
-                    obscurance = std::max(0.0, vn - settings.bias) / std::sqrt(vv + settings.epsilon);
+                    obscurance = above(settings.bias) / std::sqrt(vv + settings.epsilon);
                     break;
                 case Estimator::sao2012:
-                    obscurance = std::max(0.0, vn - settings.bias) / (vv + settings.epsilon);
+                    obscurance = above(settings.bias) / (vv + settings.epsilon);
                     break;
                 case Estimator::sao2012_undivided:
-                    obscurance = std::max(0.0, vn - settings.bias) * (quantities.ao_falloff == Falloff::hard ? 2 : 4);
+                    obscurance = above(settings.bias) * (quantities.ao_falloff == Falloff::hard ? 2.0 : 4.0);
                     break;
                 case Estimator::alchemy2011:
-                    obscurance = std::max(0.0, vn - settings.bias * depth) / (vv + settings.epsilon);
+                    obscurance = above(settings.bias * depth) / (vv + settings.epsilon);
                     break;
                 case Estimator::nielsen2015: {
                     if (vv == 0.0) break;
                     const double sine = vn / std::sqrt(vv);
                     if (weight > 0.0 && sine > least_hit_sine) {
-                        obscurance = std::max(0.0, sine - settings.bias * depth) / (vv + settings.epsilon);
+                        obscurance =
+                            above(settings.bias * depth * std::sqrt(vv)) / std::sqrt(vv) / (vv + settings.epsilon);
                         ++hits;
                     }
                     // A tap that is a hit or none according to rounding moves the mean of the others.
@@ -131,39 +141,38 @@ inline Visibility visibility_by_taps(const Layers& layers, const AmbientObscuran
                     break;
                 }
             }
-            largest = std::max(largest, weight * obscurance);
+            largest = glm::max(largest, weight * obscurance);
             both += weight * obscurance;
         }
         sum += thesis ? both : largest;
     }
-    result.mean = sum / (thesis ? std::max<double>(hits, 1) : static_cast<double>(taps.size()));
-    switch (estimator) {
-        case Estimator::mara2016:
-            result.visibility = 1.0 - settings.intensity * std::sqrt(std::numbers::pi * result.mean);
-            break;
-        case Estimator::g3d_demo: {
-            const double facing = 0.65 + 0.35 * std::max(0.0, 1.5 * normal.z);
-            result.mean *= facing;
-            result.visibility = std::pow(std::max(0.0, 1.0 - std::sqrt(3.0 * result.mean)), settings.intensity);
-            result.visibility = 1.0 + std::clamp(radius_pixels - 3.0, 0.0, 1.0) * (result.visibility - 1.0);
-            break;
+    const glm::dvec3 mean = sum / (thesis ? std::max<double>(hits, 1) : static_cast<double>(taps.size()));
+    const auto curve = [&](double of) {
+        switch (estimator) {
+            case Estimator::mara2016:
+                return std::max(0.0, 1.0 - settings.intensity * std::sqrt(std::numbers::pi * of));
+            case Estimator::g3d_demo: {
+                const double facing = 0.65 + 0.35 * std::max(0.0, 1.5 * normal.z);
+                const double visible = std::pow(std::max(0.0, 1.0 - std::sqrt(3.0 * of * facing)), settings.intensity);
+                return 1.0 + std::clamp(radius_pixels - 3.0, 0.0, 1.0) * (visible - 1.0);
+            }
+            case Estimator::sao2012:
+            case Estimator::sao2012_undivided: {
+                const double plain = std::max(0.0, 1.0 - 5.0 * settings.intensity * of);
+                return (std::pow(plain, 0.2) + 1.2 * std::pow(plain, 4.0)) / 2.2;
+            }
+            case Estimator::alchemy2011:
+            case Estimator::nielsen2015:
+                return std::pow(std::max(0.0, 1.0 - 2.0 * settings.intensity * of),
+                                static_cast<double>(settings.exponent));
+            case Estimator::linear:
+                return std::max(0.0, 1.0 - 2.0 * settings.intensity * of);
         }
-        case Estimator::sao2012:
-        case Estimator::sao2012_undivided: {
-            const double plain = std::max(0.0, 1.0 - 5.0 * settings.intensity * result.mean);
-            result.visibility = (std::pow(plain, 0.2) + 1.2 * std::pow(plain, 4.0)) / 2.2;
-            break;
-        }
-        case Estimator::alchemy2011:
-        case Estimator::nielsen2015:
-            result.visibility = std::pow(std::max(0.0, 1.0 - 2.0 * settings.intensity * result.mean),
-                                         static_cast<double>(settings.exponent));
-            break;
-        case Estimator::linear:
-            result.visibility = 1.0 - 2.0 * settings.intensity * result.mean;
-            break;
-    }
-    result.visibility = std::max(0.0, result.visibility);
+        return 0.0;
+    };
+    result.mean = mean.y;
+    result.visibility = curve(mean.y);
+    result.least = curve(mean.z), result.most = curve(mean.x);
     return result;
 }
 
