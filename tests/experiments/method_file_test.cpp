@@ -42,7 +42,9 @@ TEST(MethodFile, PublishedMethodsRenderTheWholePictureOfEveryBuiltInScene) {
         }
     }
     EXPECT_EQ(find_method(methods, "nielsen2015")->radiosity.spread_pixels, 300);
+    EXPECT_EQ(find_method(methods, "nielsen2015")->radiosity.pattern, TapPattern::nielsen2015);
     EXPECT_EQ(find_method(methods, "mara2016_demo")->composite.kind, CompositeKind::demo);
+    EXPECT_EQ(find_method(methods, "mara2016_demo")->radiosity.temporal.rejection, HistoryRejection::mara2016);
 }
 
 TEST(MethodFile, BuiltInMethodsDifferInTheirLayersOnly) {
