@@ -5,12 +5,35 @@
 #include "blur_run.h"
 #include "gaussian_blur_counterpart.h"
 #include "gl_test.h"
+#include "random_views.h"
+#include "rasterizer/pipeline.h"
+#include "rasterizer/scene_reach.h"
+#include "scenes/builtin.h"
 
 namespace plumb {
 namespace {
 
 using GaussianBlurTest = GlTest;
 PLUMBLINE_BOTH_BACKENDS(GaussianBlurTest);
+
+const std::vector<BilateralBlurSettings> cases = {
+    {.kind = BlurKind::gaussian_2015},
+    {.kind = BlurKind::gaussian_2015_listing},
+    {.kind = BlurKind::gaussian_2015, .radius = 9, .step = 2},
+    {.kind = BlurKind::gaussian_2015_listing, .radius = 20},
+    {.kind = BlurKind::gaussian_2015, .radius = 1, .step = 3},
+    {.kind = BlurKind::gaussian_2015_listing, .radius = 1},
+};
+
+// Sums of at most 41 values below 1 in float, twice: some 1e-6. Differences of depth are good to 1e-7, so that their
+// root is good to 3e-4 even where it should be 0.
+float tolerance_of(BlurKind kind) { return kind == BlurKind::gaussian_2015_listing ? 5e-4f : 1e-5f; }
+
+// Both directions.
+Image blurred(const counterpart::Layers& layers, const BilateralBlurSettings& settings, const Image& image) {
+    return counterpart::gaussian_blurred(layers, settings, counterpart::gaussian_blurred(layers, settings, image, 1, 0),
+                                         0, 1);
+}
 
 // Near and far planes between which the layers' depths of 2 to 3 m make differences of all sizes.
 View view_with_planes(int width, int height, float near_plane, float far_plane) {
@@ -28,17 +51,59 @@ TEST_P(GaussianBlurTest, AgreesWithItsCounterpart) {
                     counterpart::random_layers(view_with_planes(70, 50, near_plane, far_plane), 6);
                 const Image image = noise(70, 50, 4, 5);
                 const Image actual = blur(context(), layers, settings, image);
-                const Image rows = counterpart::gaussian_blurred(layers, settings, image, 1, 0);
-                const Image expected = counterpart::gaussian_blurred(layers, settings, rows, 0, 1);
+                const Image expected = blurred(layers, settings, image);
                 for (std::size_t i = 0; i < actual.values().size(); ++i) {
-                    // Sums of at most 19 values below 1 in float, twice: some 1e-6. Differences of depth are good to
-                    // 1e-7, so that their root is good to 3e-4 even where it should be 0.
-                    const float tolerance = kind == BlurKind::gaussian_2015_listing ? 5e-4f : 1e-5f;
-                    ASSERT_NEAR(actual.values()[i], expected.values()[i], tolerance)
+                    ASSERT_NEAR(actual.values()[i], expected.values()[i], tolerance_of(kind))
                         << "value " << i << ", radius " << radius << ", near " << near_plane;
                 }
             }
         }
+    }
+}
+
+// Every case with cameras and image shapes of its own.
+TEST_P(GaussianBlurTest, AgreesWithItsCounterpartOnNoiseInRandomViews) {
+    unsigned seed = 900;
+    for (const BilateralBlurSettings& settings : cases) {
+        for (const RandomView& random : random_views(seed, 3, anywhere, 1500)) {
+            SCOPED_TRACE(testing::Message() << "radius " << settings.radius << ", " << random);
+            const counterpart::Layers layers = counterpart::random_layers(random.view, random.seed);
+            const Image image = noise(random.view.width(), random.view.height(), 1, random.seed);
+            const Image actual = blur(context(), layers, settings, image), expected = blurred(layers, settings, image);
+            for (std::size_t i = 0; i < actual.values().size(); ++i)
+                ASSERT_NEAR(actual.values()[i], expected.values()[i], tolerance_of(settings.kind)) << "value " << i;
+        }
+        seed += 10;
+    }
+}
+
+TEST_P(GaussianBlurTest, AgreesWithItsCounterpartInRandomViewsThroughThePipeline) {
+    unsigned seed = 1000;
+    std::size_t turn = 0;
+    for (const Scene& scene : {make_cornell(), make_clutter()}) {
+        for (const RandomView& random : random_views(seed, 4, bounds_over_time(scene), 1200)) {
+            Method method;
+            method.ao.blur = cases[turn++ % cases.size()];
+            method.direct.emitters = method.direct.shadow.lamps = false;  // light is of no concern
+            SCOPED_TRACE(testing::Message() << scene.name << ", radius " << method.ao.blur.radius << ", " << random);
+            Quantities quantities{.planes = {"ao", "ao.unfiltered"}, .ao_radius = 0.5f};
+            quantities.planes.insert(quantities.planes.end(), planes_of_layers.begin(), planes_of_layers.end());
+            Pipeline pipeline(context(), scene, method, quantities, random.view.width(), random.view.height());
+            const Frame frame = pipeline.render(random.view).frame;
+            const counterpart::Layers layers = layers_of_frame(random.view, frame);
+            const Image expected = blurred(layers, method.ao.blur, frame.plane("ao.unfiltered"));
+            int wrong = 0, compared = 0;
+            for (int y = 0; y < random.view.height(); ++y) {
+                for (int x = 0; x < random.view.width(); ++x) {
+                    if (layers.depth[0].at(x, y) == 0.0f) continue;  // nothing there, which means nothing
+                    ++compared;
+                    wrong +=
+                        std::abs(frame.plane("ao").at(x, y) - expected.at(x, y)) > tolerance_of(method.ao.blur.kind);
+                }
+            }
+            EXPECT_EQ(wrong, 0) << "of " << compared;
+        }
+        seed += 10;
     }
 }
 
