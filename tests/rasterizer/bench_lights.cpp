@@ -3,7 +3,8 @@
 // `bench_lights --benchmark_filter=local_lights`.
 //
 // `shaded` counts how often a light was evaluated, per frame; `pixels` those with a surface or the texels drawn; `taps`
-// comparisons or samples. Times are wall time between two glFinish.
+// comparisons or samples of all of these. `ns_per_shaded`, `ns_per_tap` and, of what is drawn and not looked up,
+// `ns_per_texel` are read over them. Times are wall time between two glFinish.
 #include <chrono>
 #include <cstdio>
 #include <memory>
@@ -41,17 +42,36 @@ std::uint64_t count_surfaces(const LightRun& run) {
     return count;
 }
 
+// Returns the mean of the nanoseconds.
 template <typename Action>
-void time(benchmark::State& state, const Action& action) {
+double time(benchmark::State& state, const Action& action) {
     const GladGLContext& gl = context().gl;
     action();  // the driver compiles shaders at their first use
+    double sum = 0.0;
     for ([[maybe_unused]] auto _ : state) {
         gl.Finish();
         const auto start = std::chrono::steady_clock::now();
         action();
         gl.Finish();
-        state.SetIterationTime(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+        const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        state.SetIterationTime(seconds);
+        sum += seconds;
     }
+    return 1e9 * sum / static_cast<double>(state.iterations());
+}
+
+void count_taps(benchmark::State& state, double pixels, double taps_per_pixel, double nanoseconds) {
+    state.counters["pixels"] = pixels;
+    state.counters["taps"] = pixels * taps_per_pixel;
+    state.counters["ns_per_tap"] = nanoseconds / (pixels * taps_per_pixel);
+}
+
+// Of maps that are drawn, with 32-bit depths.
+void count_texels(benchmark::State& state, const Scene& scene, double texels, double nanoseconds) {
+    state.counters["pixels"] = texels;
+    state.counters["ns_per_texel"] = nanoseconds / texels;
+    state.counters["triangles"] = static_cast<double>(scene.triangle_count());
+    state.counters["MiB"] = 4.0 * texels / (1024.0 * 1024.0);
 }
 
 void local_lights(benchmark::State& state, LocalLights local_lights) {
@@ -67,7 +87,7 @@ void local_lights(benchmark::State& state, LocalLights local_lights) {
     timed.run();
     const std::uint64_t surfaces = count_surfaces(timed);
     const bool volumes = local_lights != LocalLights::fullscreen;
-    time(state, [&] {
+    const double nanoseconds = time(state, [&] {
         if (volumes) timed.run("light volumes");
         timed.run("direct");
     });
@@ -80,6 +100,8 @@ void local_lights(benchmark::State& state, LocalLights local_lights) {
     state.counters["pixels"] = static_cast<double>(surfaces);
     state.counters["shaded"] = static_cast<double>(shaded);
     state.counters["shaded_per_pixel"] = static_cast<double>(shaded) / static_cast<double>(surfaces);
+    // A small volume may shade nothing at all.
+    if (shaded > 0) state.counters["ns_per_shaded"] = nanoseconds / static_cast<double>(shaded);
 }
 
 void over_lights(benchmark::internal::Benchmark* cases) {
@@ -99,11 +121,39 @@ void point_shadows(benchmark::State& state, const ShadowSettings& settings) {
     method.direct.shadow.cube_size = method.direct.shadow.paraboloid_size = size;
     LightRun run(context(), scene, method, {"direct"}, view_of(scene, 90));
     run.run();
-    time(state, [&] { run.run("shadows"); });
+    const double nanoseconds = time(state, [&] { run.run("shadows"); });
     const int squares = settings.point_map == PointShadowMap::cube ? 6 : 2;
-    state.counters["pixels"] = static_cast<double>(squares) * size * size;
-    state.counters["triangles"] = static_cast<double>(scene.triangle_count());
-    state.counters["MiB"] = 4.0 * squares * size * size / (1024.0 * 1024.0);
+    count_texels(state, scene, static_cast<double>(squares) * size * size, nanoseconds);
+}
+
+enum class FlatMap { sun, spot };
+
+void flat_shadows(benchmark::State& state, FlatMap kind) {
+    Scene scene = make_colonnade();
+    scene.point_lights.clear(), scene.environment = {};
+    if (kind == FlatMap::spot) {
+        scene.directional_lights.clear();
+        scene.spot_lights.push_back(
+            {"spot", scene.bounds().centre(), glm::vec3(0.0f, -1.0f, 0.0f), glm::vec3(100.0f), 0.4f, 0.8f});
+    }
+    Method method = lamp_method();
+    const int size = method.direct.shadow.map_size = static_cast<int>(state.range(0));
+    LightRun run(context(), scene, method, {"direct"}, view_of(scene, 90));
+    run.run();
+    const double nanoseconds = time(state, [&] { run.run("shadows"); });
+    count_texels(state, scene, static_cast<double>(size) * size, nanoseconds);
+}
+
+// The cubes of the box's one lamp, seen from so many of its points.
+void emitter_shadows(benchmark::State& state, int points) {
+    const Scene scene = make_cornell();
+    Method method = lamp_method();
+    method.direct.shadow.emitter_samples = points;
+    const int size = method.direct.shadow.emitter_size = static_cast<int>(state.range(0));
+    LightRun run(context(), scene, method, {"direct"}, view_of(scene, 90));
+    run.run();
+    const double nanoseconds = time(state, [&] { run.run("shadows"); });
+    count_texels(state, scene, 6.0 * points * size * size, nanoseconds);
 }
 
 // Of the whole direct light under a sun; its shadow lookups are the difference between radii.
@@ -111,12 +161,13 @@ void shadow_filter(benchmark::State& state) {
     const Scene scene = make_colonnade();
     Method method = lamp_method();
     method.direct.shadow.pcf_radius = static_cast<int>(state.range(0));
+    method.direct.shadow.map_size = static_cast<int>(state.range(2));
     LightRun run(context(), scene, method, {"direct"}, view_of(scene, static_cast<int>(state.range(1))));
     run.run();
-    time(state, [&] { run.run("direct"); });
+    const double nanoseconds = time(state, [&] { run.run("direct"); });
     const double taps = static_cast<double>((2 * state.range(0) + 1) * (2 * state.range(0) + 1));
-    state.counters["pixels"] = static_cast<double>(count_surfaces(run));
-    state.counters["taps"] = taps * static_cast<double>(scene.directional_lights.size());
+    count_taps(state, static_cast<double>(count_surfaces(run)),
+               taps * static_cast<double>(scene.directional_lights.size()), nanoseconds);
 }
 
 void environment_maps(benchmark::State& state) {
@@ -125,9 +176,9 @@ void environment_maps(benchmark::State& state) {
     method.environment.size = static_cast<int>(state.range(0));
     LightRun run(context(), scene, method, RadianceMaps::outputs("environment"), view_of(scene, 90));
     auto& pass = dynamic_cast<EnvironmentMapsPass&>(run.pass("environment maps"));
-    time(state, [&] { pass.make(); });
-    state.counters["pixels"] = 6.0 * static_cast<double>(state.range(0) * state.range(0));
-    state.counters["taps"] = method.environment.samples;
+    const double nanoseconds = time(state, [&] { pass.make(); });
+    count_taps(state, 6.0 * static_cast<double>(state.range(0) * state.range(0)), method.environment.samples,
+               nanoseconds);
 }
 
 void probe(benchmark::State& state) {
@@ -136,9 +187,9 @@ void probe(benchmark::State& state) {
     const glm::vec3 centre = scene.bounds().centre();
     method.probe = {centre.x, centre.y, centre.z, static_cast<int>(state.range(0)), true};
     LightRun run(context(), scene, method, RadianceMaps::outputs("probe"), view_of(scene, 90));
-    time(state, [&] { run.run("probe"); });
-    state.counters["pixels"] = 6.0 * static_cast<double>(state.range(0) * state.range(0));
-    state.counters["taps"] = method.environment.samples;
+    const double nanoseconds = time(state, [&] { run.run("probe"); });
+    count_taps(state, 6.0 * static_cast<double>(state.range(0) * state.range(0)), method.environment.samples,
+               nanoseconds);
 }
 
 void three_sizes(benchmark::internal::Benchmark* cases, const std::vector<std::int64_t>& sizes) {
@@ -175,10 +226,21 @@ int main(int argument_count, char** arguments) {
                         [settings = settings](benchmark::State& state) { point_shadows(state, settings); }),
                     {256, 512, 1024});
     }
+    for (const auto& [name, kind] : {std::pair{"sun", FlatMap::sun}, std::pair{"spot", FlatMap::spot}}) {
+        three_sizes(benchmark::RegisterBenchmark(fmt::format("flat_shadows/{}", name).c_str(),
+                                                 [kind = kind](benchmark::State& state) { flat_shadows(state, kind); }),
+                    {512, 1024, 2048});
+    }
+    for (const int points : {1, 4}) {
+        three_sizes(benchmark::RegisterBenchmark(fmt::format("emitter_shadows/{}", points).c_str(),
+                                                 [points](benchmark::State& state) { emitter_shadows(state, points); }),
+                    {128, 256, 512});
+    }
     benchmark::internal::Benchmark* filter = benchmark::RegisterBenchmark("shadow_filter", shadow_filter);
-    filter->ArgNames({"radius", "height"})->UseManualTime()->Unit(benchmark::kMillisecond)->Iterations(3);
-    for (const int height : {180, 360, 720}) {
-        for (const int radius : {0, 1, 3}) filter->Args({radius, height});
+    filter->ArgNames({"radius", "height", "map"})->UseManualTime()->Unit(benchmark::kMillisecond)->Iterations(3);
+    for (const int radius : {0, 1, 3}) {
+        for (const int height : {180, 360, 720}) filter->Args({radius, height, 2048});
+        for (const int map : {512, 1024}) filter->Args({radius, 360, map});
     }
     three_sizes(benchmark::RegisterBenchmark("environment_maps", environment_maps), {64, 128, 256});
     three_sizes(benchmark::RegisterBenchmark("probe", probe), {32, 64, 128});

@@ -16,6 +16,7 @@
 #include <benchmark/benchmark.h>
 
 #include "rasterizer/gl_context.h"
+#include "rasterizer/light_set.h"
 #include "rasterizer/pipeline.h"
 #include "scenes/builtin.h"
 
@@ -79,7 +80,6 @@ const std::vector<PassCase> pass_cases{
      {"ao"},
      nothing_else,
      [](const Method& method) { return taps_of_blur(method.ao.blur); }},
-    {"shadows", {"direct"}},
     {"light volumes", {"direct"}, [](Method& method) { method.direct.local_lights = LocalLights::volume_stencil; }},
     {"direct", {"direct"}, nothing_else, lights},
     {"direct.layer2", {"layer2.direct"}, nothing_else, lights},
@@ -143,6 +143,33 @@ void measure(benchmark::State& state, GlContext& context, const Scene& scene, co
     state.counters["GL_MiB"] = static_cast<double>(context.allocated_bytes()) / (1024.0 * 1024.0);
 }
 
+// Shadow maps of all lights, whatever the image's size: the sun's of `size` texels a side, a lamp's cube of half as
+// many and the emitters' of a quarter, as by default.
+void measure_shadows(benchmark::State& state, GlContext& context, const Scene& scene) {
+    Method method;
+    const int size = static_cast<int>(state.range(0));
+    ShadowSettings& shadow = method.direct.shadow;
+    shadow.map_size = size, shadow.cube_size = size / 2, shadow.emitter_size = size / 4;
+    Quantities quantities;
+    quantities.planes = {"direct"};
+    const View view(scene.camera("court"), 32, 18);
+    Pipeline pipeline(context, scene, method, quantities, view.width(), view.height());
+    pipeline.time_passes(view);
+    double total = 0.0;
+    for (auto _ : state) {
+        const double seconds = seconds_of("shadows", pipeline, view, state);
+        if (seconds < 0.0) return;
+        state.SetIterationTime(seconds);
+        total += seconds;
+    }
+    const auto squares = [&](std::size_t maps, int side) { return static_cast<double>(maps) * side * side; };
+    const LightSet lights(scene, method.direct);
+    const double texels = squares(lights.maps.size(), size) + squares(6 * lights.point_cubes.size(), shadow.cube_size) +
+                          squares(6 * lights.emitter_cubes.size(), shadow.emitter_size);
+    state.counters["texels"] = texels;
+    state.counters["ns_per_texel"] = 1e9 * total / (static_cast<double>(state.iterations()) * texels);
+}
+
 // The environment's maps are made in a pipeline's first frame and kept, whatever the image's size.
 void measure_environment_maps(benchmark::State& state, GlContext& context, const Scene& scene) {
     Method method;
@@ -151,15 +178,19 @@ void measure_environment_maps(benchmark::State& state, GlContext& context, const
     Quantities quantities;
     quantities.planes = {"reflection"};
     const View view(scene.camera("court"), 32, 18);
+    double total = 0.0;
     for (auto _ : state) {
         Pipeline pipeline(context, scene, method, quantities, view.width(), view.height());
         const double seconds = seconds_of("environment maps", pipeline, view, state);
         if (seconds < 0.0) return;
         state.SetIterationTime(seconds);
+        total += seconds;
     }
     const double texels = 6.0 * static_cast<double>(state.range(0) * state.range(0));
     state.counters["texels"] = texels;
     state.counters["taps"] = texels * method.environment.samples;
+    state.counters["ns_per_tap"] =
+        1e9 * total / (static_cast<double>(state.iterations()) * texels * method.environment.samples);
 }
 
 }  // namespace
@@ -182,6 +213,15 @@ int main(int argument_count, char** arguments) {
             ->Iterations(10)  // each is a frame; a time limit on a cheap pass would wait for its costly neighbours
             ->Unit(benchmark::kMillisecond);
     }
+    benchmark::RegisterBenchmark("shadows",
+                                 [&](benchmark::State& state) { plumb::measure_shadows(state, *context, scene); })
+        ->Arg(512)
+        ->Arg(1024)
+        ->Arg(2048)
+        ->ArgName("size")
+        ->UseManualTime()
+        ->Iterations(10)
+        ->Unit(benchmark::kMillisecond);
     benchmark::RegisterBenchmark(
         "environment maps", [&](benchmark::State& state) { plumb::measure_environment_maps(state, *context, scene); })
         ->Arg(64)
