@@ -41,16 +41,14 @@ GBufferPass::GBufferPass(const PassResources& resources, int layer)
       history_(resources.planes.history_of("depth")),
       targets_(gbuffer_targets(resources, depth_, layer)),
       draw_(resources, {"gbuffer.vert", "gbuffer.frag"}, peeling_defines(targets_, layer)),
-      target_(depth_, history_, [this] {
-          return GlFramebuffer(context_, targets_.colours, GlAttachment{&depth_buffer_}, pass_name(layer_).c_str());
-      }) {
+      target_(context_, targets_.colours, GlAttachment{&depth_buffer_}, pass_name(layer_).c_str()) {
     if (layer == 0) background_.emplace(resources, depth_buffer_);
 }
 
 void GBufferPass::execute(const PassFrame& frame) {
     const GladGLContext& gl = context_.gl;
     if (history_ && layer_ == 0) history_->trade_places();
-    clear_gbuffer(target_.now(), static_cast<GLint>(targets_.colours.size()), test_);
+    clear_gbuffer(target_, static_cast<GLint>(targets_.colours.size()), test_);
     gl.Enable(GL_DEPTH_TEST);
     gl.DepthFunc(test_.nearer);
     if (layer_ > 0) {

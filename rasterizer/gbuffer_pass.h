@@ -33,7 +33,7 @@ private:
     const PlaneHistory* history_;  // null where nobody reads the depth of the frame before
     GBufferTargets targets_;
     GBufferDraw draw_;
-    PlaneTarget target_;
+    GlFramebuffer target_;
     std::optional<BackgroundDraw> background_;
 };
 

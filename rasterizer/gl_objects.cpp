@@ -195,7 +195,7 @@ GLuint create_framebuffer(GlContext& context) {
     return id;
 }
 
-void attach(const GladGLContext& gl, GLuint framebuffer, GLenum point, const GlAttachment& attachment) {
+void attach_texture(const GladGLContext& gl, GLuint framebuffer, GLenum point, const GlAttachment& attachment) {
     const GlTexture& texture = *attachment.texture;
     if (texture.target() == GL_TEXTURE_2D || attachment.layer < 0) {
         gl.NamedFramebufferTexture(framebuffer, point, texture.id(), attachment.level);
@@ -213,12 +213,12 @@ GlFramebuffer::GlFramebuffer(GlContext& context, std::span<const GlAttachment> c
     std::vector<GLenum> draw_buffers;
     for (const GlAttachment& colour : colours) {
         const GLenum point = GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(draw_buffers.size());
-        attach(gl, id(), point, colour);
+        attach(point, colour);
         draw_buffers.push_back(point);
     }
     if (depth.texture != nullptr) {
         const bool has_stencil = depth.texture->format() == GL_DEPTH32F_STENCIL8;
-        attach(gl, id(), has_stencil ? GL_DEPTH_STENCIL_ATTACHMENT : GL_DEPTH_ATTACHMENT, depth);
+        attach(has_stencil ? GL_DEPTH_STENCIL_ATTACHMENT : GL_DEPTH_ATTACHMENT, depth);
     }
     if (draw_buffers.empty()) {
         gl.NamedFramebufferDrawBuffer(id(), GL_NONE);
@@ -233,6 +233,20 @@ GlFramebuffer::GlFramebuffer(GlContext& context, std::span<const GlAttachment> c
         throw GlError(fmt::format("framebuffer of '{}' ({}x{}, {} colours) is incomplete: status {:#x}", purpose,
                                   width_, height_, colours.size(), status));
     }
+}
+
+void GlFramebuffer::attach(GLenum point, const GlAttachment& attachment) {
+    attach_texture(context().gl, GlObject::id(), point, attachment);
+    if (attachment.texture->is_trading()) trading_.push_back({point, attachment, attachment.texture->id()});
+}
+
+GLuint GlFramebuffer::id() const {
+    for (Trading& one : trading_) {
+        if (one.attachment.texture->id() == one.attached) continue;
+        attach_texture(context().gl, GlObject::id(), one.point, one.attachment);
+        one.attached = one.attachment.texture->id();
+    }
+    return GlObject::id();
 }
 
 void GlFramebuffer::bind() const {

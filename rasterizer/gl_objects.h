@@ -63,6 +63,9 @@ public:
     int layers() const { return layers_; }  // cubes: 6 each
     int levels() const { return levels_; }
 
+    // It stays where it is in memory, and may trade its contents with another one of its shape (plane_history.h).
+    void set_trading() { trading_ = true; }
+    bool is_trading() const { return trading_; }
     void set_filter(GLint minify, GLint magnify);
     void set_wrap(GLint wrap_u, GLint wrap_v);
     void bind(GLuint unit) const;
@@ -74,6 +77,7 @@ private:
 
     GLenum target_ = 0, format_ = 0;
     int width_ = 0, height_ = 0, layers_ = 0, levels_ = 0;
+    bool trading_ = false;
 };
 
 // One layer and level of a texture as the target of a framebuffer. `layer` -1 attaches all layers, for gl_Layer.
@@ -92,10 +96,21 @@ public:
                   const char* purpose);
     // Binds for drawing and sets the viewport to the whole framebuffer.
     void bind() const;
+    // With what its textures are now: those that trade places (GlTexture::set_trading) are attached anew where they
+    // have.
+    GLuint id() const;
     int width() const { return width_; }
     int height() const { return height_; }
 
 private:
+    struct Trading {
+        GLenum point;
+        GlAttachment attachment;
+        GLuint attached;
+    };
+    void attach(GLenum point, const GlAttachment& attachment);
+
+    mutable std::vector<Trading> trading_;
     int width_ = 0, height_ = 0;
 };
 

@@ -10,7 +10,7 @@
 
 namespace plumb {
 
-// Makes the chain of one layer of a plane, level 0 included: a copy, or the plane itself where only the chain reads it.
+// Makes the chain of one layer of a plane, level 0 included: a copy, or the plane itself where nobody keeps that.
 class MipChainPass final : public Pass {
 public:
     MipChainPass(const PassResources& resources, const std::string& plane, const std::string& chain, int layer);

@@ -1,5 +1,7 @@
 #include "rasterizer/one_pass_gbuffer.h"
 
+#include <array>
+
 #include <fmt/format.h>
 
 #include "rasterizer/gl_error.h"
@@ -31,15 +33,10 @@ OnePassGBuffer::OnePassGBuffer(const PassResources& resources)
       targets_(gbuffer_targets(resources, depth_, -1)),
       draw_(resources, shader_files(settings_.layer_selection), defines()),
       comparison_draw_(resources, {"gbuffer.vert", "gbuffer.frag"}, {}),
-      background_(resources, buffer_) {
-    for (Targets& targets : places_) {
-        targets.layers = GlFramebuffer(context_, targets_.colours, GlAttachment{&buffer_, -1}, "gbuffer");
-        const GlAttachment comparison{&history_.before(), comparison_layer()};
-        targets.comparison =
-            GlFramebuffer(context_, {&comparison, 1}, GlAttachment{&buffer_, comparison_layer()}, "gbuffer comparison");
-        history_.trade_places();  // back in their places after two
-    }
-}
+      background_(resources, buffer_),
+      layers_target_(context_, targets_.colours, GlAttachment{&buffer_, -1}, "gbuffer"),
+      comparison_target_(context_, std::array{GlAttachment{&history_.before(), comparison_layer()}},
+                         GlAttachment{&buffer_, comparison_layer()}, "gbuffer comparison") {}
 
 bool OnePassGBuffer::looks_ahead() const {
     return settings_.generation == LayerGeneration::delay || settings_.generation == LayerGeneration::predict;
@@ -67,7 +64,6 @@ ShaderDefines OnePassGBuffer::defines() const {
 void OnePassGBuffer::execute(const PassFrame& frame) {
     const GladGLContext& gl = context_.gl;
     history_.trade_places();
-    place_ = 1 - place_;
     const Frustum frustum(frame.view.clip_from_camera() * frame.view.camera_from_world());
     const Frustum next(frame.next->clip_from_camera() * frame.next->camera_from_world());
     const bool has_history = settings_.generation == LayerGeneration::delay ? frame.foretold : frame.continues;
@@ -75,7 +71,7 @@ void OnePassGBuffer::execute(const PassFrame& frame) {
     gl.Enable(GL_DEPTH_TEST);
     gl.DepthFunc(test_.nearer);
     if (!has_history) draw_comparison(frustum);
-    clear_gbuffer(places_[place_].layers, static_cast<GLint>(targets_.colours.size()), test_);
+    clear_gbuffer(layers_target_, static_cast<GLint>(targets_.colours.size()), test_);
     history_.before().bind(SceneGeometry::first_free_texture_unit);
     draw_.set("minimum_separation", separation_in_metres(settings_, frame.view.camera()));
     if (settings_.generation == LayerGeneration::reproject) draw_.set("follow_motion", has_history ? 1 : 0);
@@ -86,7 +82,7 @@ void OnePassGBuffer::execute(const PassFrame& frame) {
 }
 
 void OnePassGBuffer::draw_comparison(const Frustum& frustum) const {
-    clear_gbuffer(places_[place_].comparison, 1, test_);
+    clear_gbuffer(comparison_target_, 1, test_);
     comparison_draw_.draw(frustum);
 }
 

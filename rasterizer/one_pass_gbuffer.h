@@ -31,7 +31,6 @@
 // memory (plane_pool.h).
 #pragma once
 
-#include <array>
 #include <string_view>
 
 #include "rasterizer/gbuffer_draw.h"
@@ -47,11 +46,6 @@ public:
     void execute(const PassFrame& frame) override;
 
 private:
-    // Targets for either place of the two depth textures.
-    struct Targets {
-        GlFramebuffer layers, comparison;
-    };
-
     bool looks_ahead() const;
     int layer_count() const { return looks_ahead() ? 3 : 2; }
     // The layer of the last frame's depth that holds what fragments are compared with.
@@ -69,8 +63,7 @@ private:
     GBufferTargets targets_;
     GBufferDraw draw_, comparison_draw_;
     BackgroundDraw background_;
-    std::array<Targets, 2> places_;
-    int place_ = 0;
+    GlFramebuffer layers_target_, comparison_target_;
 };
 
 }  // namespace plumb

@@ -36,11 +36,13 @@ bool touches(const std::vector<std::string>& planes, const std::string& base) {
     return std::ranges::any_of(planes, [&](const std::string& plane) { return split_layer(plane).base == base; });
 }
 
-// Whether the output may overwrite the input: it must be of no use to anyone else, in this frame and the next.
+// Whether the output may overwrite the input: it must be of no use to anyone else, in this frame and the next. A chain
+// leaves its finest level as it is, for whoever reads it.
 bool can_be_in_place(const PassDeclaration::InPlace& pair, const std::vector<PassDeclaration>& declarations,
                      const std::vector<std::size_t>& order, const std::vector<std::string>& wanted,
                      const PlaneLifetimes& lifetimes) {
     if (!lifetimes.within_frame.contains(pair.input) || !lifetimes.within_frame.contains(pair.output)) return false;
+    if (pair.is_chain) return true;
     if (touches(wanted, pair.input)) return false;
     return std::ranges::none_of(order, [&](std::size_t index) {
         const PassDeclaration& pass = declarations[index];
@@ -85,8 +87,8 @@ PlaneLifetimes find_lifetimes(const std::vector<PassDeclaration>& declarations, 
         if (!lifetimes.in_place.emplace(pair->output, pair->input).second) continue;  // as another layer has it
         if (pair->is_chain) lifetimes.chained.insert(pair->input);
         for (std::size_t layer = 0; layer < most_layers; ++layer) {  // they end as one
-            std::size_t& end = uses.at(pair->input).last.at(layer);
-            end = std::max(end, uses.at(pair->output).last.at(layer));
+            std::size_t &end = uses.at(pair->input).last.at(layer), &other = uses.at(pair->output).last.at(layer);
+            end = other = std::max(end, other);
         }
     }
     lifetimes.ended_after.resize(order.size());

@@ -2,14 +2,13 @@
 //
 // Two textures trade places frame by frame: the plane keeps its name and the references to it, and what it held before
 // can be read from the other one. Nothing is copied, and nothing is allocated after the first frame. Who draws into the
-// plane needs a framebuffer for either place.
+// plane has a framebuffer that follows it (GlFramebuffer::id).
 //
 // What is kept is that of the frame before only where PassFrame::continues is true; else (first frame, cut) it is
 // undefined, and its reader must not look at it.
 #pragma once
 
-#include <array>
-#include <functional>
+#include <list>
 
 #include "rasterizer/gl_objects.h"
 
@@ -17,8 +16,11 @@ namespace plumb {
 
 class PlaneHistory {
 public:
-    // Both of one size, format and number of layers; the references must stay valid.
-    PlaneHistory(GlTexture& now, GlTexture& before) : now_(&now), before_(&before) {}
+    // Both of one size, format and number of layers; the references must stay valid. `views_of_now` and
+    // `views_of_before`: views of either, one for one, that trade places with them.
+    PlaneHistory(GlTexture& now, GlTexture& before, std::list<GlTexture>* views_of_now = nullptr,
+                 std::list<GlTexture>* views_of_before = nullptr)
+        : now_(&now), before_(&before), views_of_now_(views_of_now), views_of_before_(views_of_before) {}
 
     // The first thing that the pass which draws the plane does in a frame.
     void trade_places() const;
@@ -27,22 +29,7 @@ public:
 
 private:
     GlTexture *now_, *before_;
-};
-
-// What draws into a plane that may have a history: the framebuffer that goes with the plane's present place.
-class PlaneTarget {
-public:
-    PlaneTarget() = default;
-    // `make` makes the framebuffer for where the plane is; it is called once, or for either place where there is a
-    // history.
-    PlaneTarget(const GlTexture& plane, const PlaneHistory* history, const std::function<GlFramebuffer()>& make);
-
-    const GlFramebuffer& now() const { return plane_->id() == first_ ? framebuffers_[0] : framebuffers_[1]; }
-
-private:
-    const GlTexture* plane_ = nullptr;
-    GLuint first_ = 0;  // the texture that was the plane when this was made
-    std::array<GlFramebuffer, 2> framebuffers_;
+    std::list<GlTexture>*views_of_now_, *views_of_before_;
 };
 
 }  // namespace plumb

@@ -21,7 +21,7 @@ struct PlaneLifetimes {
     std::set<std::string, std::less<>> within_frame = {};
     // Planes that overwrite another one, with that other one.
     std::map<std::string, std::string, std::less<>> in_place = {};
-    // Those that their own MIP chain overwrites.
+    // Those that are the finest level of their own MIP chain.
     std::set<std::string, std::less<>> chained = {};
     // For each pass that runs: what nobody needs once it has.
     std::vector<std::vector<Ended>> ended_after = {};

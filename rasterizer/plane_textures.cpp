@@ -17,12 +17,17 @@ LayeredName split_layer(std::string_view plane) {
 }
 
 GlTexture& PlaneTextures::create(const std::string& name, GLenum format, int layers, int levels) {
-    if (!lifetimes_.within_frame.contains(name))
-        return adopt(name, GlTexture::array(context_, format, width_, height_, layers, levels));
+    if (!lifetimes_.within_frame.contains(name)) return allocate(name, format, layers, levels);
     GlTexture& taken = take(name, format, layers, levels);
     borrow(name, taken);
     shared_.emplace(name, &taken);
     return taken;
+}
+
+GlTexture& PlaneTextures::allocate(const std::string& name, GLenum format, int layers, int levels) {
+    GlTexture& texture = adopt(name, GlTexture::array(context_, format, width_, height_, layers, levels));
+    texture.set_trading();  // it may get a history
+    return texture;
 }
 
 GlTexture& PlaneTextures::take(const std::string& name, GLenum format, int layers, int levels) {
@@ -30,7 +35,10 @@ GlTexture& PlaneTextures::take(const std::string& name, GLenum format, int layer
     if (overwritten == lifetimes_.in_place.end())
         return pool_.take(format, layers, lifetimes_.chained.contains(name) ? pool_.most_levels() : levels);
     GlTexture& texture = *shared_.at(overwritten->second);
-    if (texture.format() != format || texture.layers() != layers || texture.levels() < levels) {
+    // Of a chain's layers the last ones may be read by nobody.
+    const bool is_chain = lifetimes_.chained.contains(overwritten->second);
+    const bool has_layers = is_chain ? texture.layers() >= layers : texture.layers() == layers;
+    if (texture.format() != format || !has_layers || texture.levels() < levels) {
         throw GlError(
             fmt::format("the plane '{}' cannot overwrite '{}', which has another shape", name, overwritten->second));
     }
@@ -67,9 +75,14 @@ const PlaneHistory& PlaneTextures::create_history(const std::string& name, const
                         name));
     }
     GlTexture& now = found->second;
-    GlTexture& then =
-        adopt(before, GlTexture::array(context_, now.format(), width_, height_, now.layers(), now.levels()));
-    return histories_.emplace(name, PlaneHistory(now, then)).first->second;
+    if (!lifetimes_.within_frame.contains(before)) {
+        GlTexture& then = allocate(before, now.format(), now.layers(), now.levels());
+        return histories_.emplace(name, PlaneHistory(now, then)).first->second;
+    }
+    const PooledHistory pooled = pool_.take_history(now);
+    borrow(before, *pooled.taken);
+    shared_.emplace(before, pooled.taken);
+    return histories_.emplace(name, pooled.history).first->second;
 }
 
 const PlaneHistory* PlaneTextures::history_of(std::string_view name) const {

@@ -51,8 +51,8 @@ public:
     // The passes made from here on do not know the plane or its last layers: where it shares its memory, they may take
     // that. Who looks up a plane of which no layer is left gets a GlError.
     void give_up(const PlaneLifetimes::Ended& ended);
-    // Allocates what the plane `name`, which there is, held in the frame before, under the name `before`. Throws
-    // GlError where the plane shares its memory.
+    // Allocates what the plane `name`, which there is, held in the frame before, under the name `before`; where that
+    // matters only within a frame, it shares its memory with others. Throws GlError where `name` does.
     const PlaneHistory& create_history(const std::string& name, const std::string& before);
     // Null where the plane has none.
     const PlaneHistory* history_of(std::string_view name) const;
@@ -65,6 +65,8 @@ public:
     const std::map<std::string, const GlTexture*, std::less<>>& all() const { return textures_; }
 
 private:
+    // Of memory that is not shared.
+    GlTexture& allocate(const std::string& name, GLenum format, int layers, int levels);
     // Of memory that is shared.
     GlTexture& take(const std::string& name, GLenum format, int layers, int levels);
 

@@ -9,6 +9,7 @@ namespace {
 
 constexpr GLuint antialias_displacement_unit = 3;
 constexpr const char* resolved_plane = "total";
+constexpr const char* resolved_before = "total.previous";  // which nobody reads once the pass has run
 
 // The digits of `index` in `base`, mirrored about the point.
 double radical_inverse(int index, int base) {
@@ -23,7 +24,7 @@ double radical_inverse(int index, int base) {
 const GlTexture& create_resolved(PlaneTextures& planes) {
     // Whole floats: in half ones a small share of a new colour is rounded away.
     const GlTexture& resolved = planes.create(resolved_plane, GL_RGBA32F, 1);
-    planes.create_history(resolved_plane, "total.previous");
+    planes.create_history(resolved_plane, resolved_before);
     return resolved;
 }
 
@@ -63,9 +64,7 @@ TemporalAntialiasPass::TemporalAntialiasPass(const PassResources& resources)
       history_(*resources.planes.history_of(resolved_plane)),
       draw_(resources.context, resources.programs, "temporal_antialias.frag",
             defines(resources.method.antialias, reprojection_, area_)),
-      target_(resolved_, &history_, [&] {
-          return GlFramebuffer(resources.context, std::array{GlAttachment{&resolved_}}, {}, "temporal antialias");
-      }) {}
+      target_(resources.context, std::array{GlAttachment{&resolved_}}, {}, "temporal antialias") {}
 
 void TemporalAntialiasPass::execute(const PassFrame& frame) {
     history_.trade_places();
@@ -75,7 +74,7 @@ void TemporalAntialiasPass::execute(const PassFrame& frame) {
     reprojection_.bind();
     draw_.program().set("has_history", frame.continues ? 1 : 0);
     const InnerArea::Restriction restriction(area_);
-    draw_.draw(target_.now());
+    draw_.draw(target_);
 }
 
 PassDeclaration declare_temporal_antialias(const Scene& scene, const Method& method) {
@@ -86,6 +85,7 @@ PassDeclaration declare_temporal_antialias(const Scene& scene, const Method& met
     pass.outputs = {resolved_plane};
     pass.parameters = {{"antialias."}};
     pass.kept = pass.outputs;
+    pass.scratch = {resolved_before};
     pass.create = [](const PassResources& resources) { return std::make_unique<TemporalAntialiasPass>(resources); };
     if (!method.antialias.temporal) pass.disabled = "antialias.temporal is false";
     pass.remark = fmt::format("{} offsets, alpha {}", method.antialias.jitter_length, method.antialias.alpha);

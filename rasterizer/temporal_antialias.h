@@ -53,7 +53,7 @@ private:
     const GlTexture& resolved_;
     const PlaneHistory& history_;
     FullscreenDraw draw_;
-    PlaneTarget target_;
+    GlFramebuffer target_;
 };
 
 PassDeclaration declare_temporal_antialias(const Scene& scene, const Method& method);

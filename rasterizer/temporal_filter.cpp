@@ -35,6 +35,9 @@ const TemporalFilterSettings& checked(const TemporalFilterRequest& request) {
 
 bool reads_normals(const TemporalFilterSettings& settings) { return settings.rejection == HistoryRejection::plane; }
 
+// Which nobody reads once the filter has run.
+std::string filtered_before(const TemporalFilterRequest& request) { return request.output + ".previous"; }
+
 bool writes_weight(const PassResources& resources, const TemporalFilterRequest& request) {
     return resources.is_read(layer_prefix(request.layer) + request.weight);
 }
@@ -46,7 +49,7 @@ const GlTexture& create_output(const PassResources& resources, const TemporalFil
         return planes.has(name) ? planes.get(name) : planes.create(name, format, resources.layers_of(name));
     };
     const GlTexture& output = create(request.output, planes.get(request.input).format());
-    if (!planes.history_of(request.output)) planes.create_history(request.output, request.output + ".previous");
+    if (!planes.history_of(request.output)) planes.create_history(request.output, filtered_before(request));
     if (writes_weight(resources, request)) create(request.weight, GL_R32F);
     return output;
 }
@@ -88,7 +91,7 @@ TemporalFilterPass::TemporalFilterPass(const PassResources& resources, const Tem
       history_(*resources.planes.history_of(request.output)),
       draw_(resources.context, resources.programs, "temporal_filter.frag",
             defines(resources, request, reprojection_, area_)),
-      target_(output_, &history_, [&] { return make_target(resources, request); }) {}
+      target_(make_target(resources, request)) {}
 
 void TemporalFilterPass::execute(const PassFrame& frame) {
     if (is_first_) history_.trade_places();
@@ -100,7 +103,7 @@ void TemporalFilterPass::execute(const PassFrame& frame) {
     reprojection_.bind();
     draw_.program().set("has_history", frame.continues ? 1 : 0);
     const InnerArea::Restriction restriction(area_);
-    draw_.draw(target_.now());
+    draw_.draw(target_);
 }
 
 std::string_view to_string(HistoryRejection rejection) {
@@ -119,7 +122,8 @@ PassDeclaration declare_temporal_filter(const Scene& scene, const TemporalFilter
                              [request](const PassResources& resources) {
                                  return std::make_unique<TemporalFilterPass>(resources, request);
                              },
-                         .kept = {request.output}};
+                         .kept = {request.output},
+                         .scratch = {filtered_before(request)}};
     if (reads_normals(request.settings)) pass.inputs.push_back(prefix + "normal");
     // The second layer's own, or both.
     for (int layer = 0; layer < 2; ++layer) {

@@ -67,7 +67,7 @@ private:
     const GlTexture& output_;
     const PlaneHistory& history_;
     FullscreenDraw draw_;
-    PlaneTarget target_;
+    GlFramebuffer target_;
 };
 
 std::string_view to_string(HistoryRejection rejection);

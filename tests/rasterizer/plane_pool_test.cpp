@@ -85,6 +85,51 @@ TEST_P(PlanePoolTest, ASingleLevelFitsIntoAChainAndNotTheOtherWayRound) {
     EXPECT_GT(context().allocated_bytes(), bytes);
 }
 
+// What a plane held before may be others' memory but for the passes between which it matters; whatever they write,
+// through views or not, the plane keeps. Two planes of a shape share what they held before.
+TEST_P(PlanePoolTest, WhatAPlaneHeldBeforeIsOthersMemoryUntilTheyTradePlaces) {
+    PlanePool pool(context(), width, height);
+    GlTexture first = GlTexture::array(context(), GL_R32F, width, height, 2),
+              second = GlTexture::array(context(), GL_R32F, width, height, 2);
+    first.set_trading(), second.set_trading();
+    GlTexture& early = pool.take(GL_R32F, 2, 1);
+    pool.give_back(early);
+    GlTexture& narrow = pool.take(GL_R11F_G11F_B10F, 1, 1);
+    const GlFramebuffer drawn(context(), std::array{GlAttachment{&narrow, 0}}, {}, "view"),
+        kept(context(), std::array{GlAttachment{&first, 1}}, {}, "kept");
+    pool.give_back(narrow);
+    const std::size_t bytes = context().allocated_bytes();
+    const PooledHistory one = pool.take_history(first);
+    EXPECT_EQ(one.taken, &early);
+    pool.give_back(early);
+    const PooledHistory other = pool.take_history(second);
+    EXPECT_EQ(other.taken, &early);
+    pool.give_back(early);
+    GlTexture& late = pool.take(GL_RGBA8, 2, 1);
+    EXPECT_EQ(context().allocated_bytes(), bytes);
+
+    const auto clear = [&](const GlFramebuffer& target, float value) {
+        const std::array<float, 4> values{value, value, value, value};
+        context().gl.ClearNamedFramebufferfv(target.id(), GL_COLOR, 0, values.data());
+    };
+    for (int frame = 0; frame < 4; ++frame) {
+        SCOPED_TRACE(frame);
+        const float value = 1.0f + static_cast<float>(frame);
+        fill(early, 0, -1.0f), fill(early, 1, -1.0f);
+        clear(drawn, 0.5f);
+        EXPECT_TRUE(holds(narrow, 0, 0.5f));
+        one.history.trade_places();
+        EXPECT_TRUE(frame == 0 || holds(early, 1, value - 1.0f)) << "before";
+        clear(kept, value);
+        other.history.trade_places();
+        EXPECT_TRUE(frame == 0 || holds(early, 0, 10.0f * value - 10.0f)) << "before, of the other";
+        fill(second, 0, 10.0f * value);
+        upload(late, 0, Image(width, height, 4, 0.2f)), upload(late, 1, Image(width, height, 4, 0.2f));
+        EXPECT_TRUE(holds(first, 1, value));
+        EXPECT_TRUE(holds(second, 0, 10.0f * value));
+    }
+}
+
 TEST_P(PlanePoolTest, APlaneThatWasGivenUpIsNotFoundAndOneWithAHistoryIsNotShared) {
     PlaneTextures planes(context(), width, height,
                          {.within_frame = {"noise", "light"}, .in_place = {{"light", "noise"}}});
@@ -169,6 +214,21 @@ TEST(PlaneLifetimes, WhatIsOverwrittenMustBeOfNoUseToOthers) {
     passes[2].inputs.pop_back();
     passes[2].kept = {"smooth"};
     EXPECT_THAT(plan_passes(passes, {"total"}).lifetimes.in_place, IsEmpty()) << "needed in the next frame";
+}
+
+TEST(PlaneLifetimes, AChainIsThePlaneItselfWhoeverElseReadsIt) {
+    std::vector<PassDeclaration> passes{pass("a", {}, {"x", "layer2.x"}), pass("chain", {"x"}, {"x_chain"}),
+                                        pass("gather", {"x_chain"}, {"y"}),
+                                        pass("light", {"x", "layer2.x", "y"}, {"z"}), pass("show", {"z"}, {"total"})};
+    passes[1].in_place = PassDeclaration::InPlace{.output = "x_chain", .input = "x", .is_chain = true};
+    const PlaneLifetimes lifetimes = plan_passes(passes, {"total"}).lifetimes;
+    EXPECT_EQ(lifetimes.in_place.at("x_chain"), "x");
+    EXPECT_THAT(lifetimes.chained, UnorderedElementsAre("x"));
+    EXPECT_THAT(ended(lifetimes, 2), IsEmpty()) << "the chain is read no more, and is more than a chain";
+    EXPECT_THAT(ended(lifetimes, 3), UnorderedElementsAre("x", "x_chain", "y"));
+    EXPECT_THAT(ended(plan_passes(passes, {"total", "x"}).lifetimes, 3), ElementsAre("y")) << "asked for";
+    passes[0].kept = {"x"};
+    EXPECT_THAT(plan_passes(passes, {"total"}).lifetimes.in_place, IsEmpty()) << "its memory is its own";
 }
 
 }  // namespace
