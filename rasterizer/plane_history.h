@@ -16,11 +16,11 @@ namespace plumb {
 
 class PlaneHistory {
 public:
-    // Both of one size, format and number of layers; the references must stay valid. `views_of_now` and
-    // `views_of_before`: views of either, one for one, that trade places with them.
-    PlaneHistory(GlTexture& now, GlTexture& before, std::list<GlTexture>* views_of_now = nullptr,
-                 std::list<GlTexture>* views_of_before = nullptr)
-        : now_(&now), before_(&before), views_of_now_(views_of_now), views_of_before_(views_of_before) {}
+    // The plane, and the texture that takes what it held: both of one size, format and number of layers; the references
+    // must stay valid. `views` and `former_views`: views of either, one for one, that trade places with them.
+    PlaneHistory(GlTexture& plane, GlTexture& former, std::list<GlTexture>* views = nullptr,
+                 std::list<GlTexture>* former_views = nullptr)
+        : now_(&plane), before_(&former), views_of_now_(views), views_of_before_(former_views) {}
 
     // The first thing that the pass which draws the plane does in a frame.
     void trade_places() const;
@@ -29,7 +29,8 @@ public:
 
 private:
     GlTexture *now_, *before_;
-    std::list<GlTexture>*views_of_now_, *views_of_before_;
+    std::list<GlTexture>* views_of_now_;
+    std::list<GlTexture>* views_of_before_;
 };
 
 }  // namespace plumb
