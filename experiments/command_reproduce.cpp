@@ -122,8 +122,8 @@ public:
     // Of all of them, those included that were measured before; truths that some share are counted for each.
     DiskUse all_disk_use(const std::vector<std::string>& names) const {
         DiskUse all;
+        LoadedScenes scenes(finder_);
         for (const std::string& name : names) {
-            LoadedScenes scenes(finder_);
             const DiskUse use = disk_use(load_reproduction(name), scenes, options_.frames, options_.quick);
             all.cache += use.cache, all.output += use.output;
         }

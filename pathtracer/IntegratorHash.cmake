@@ -3,8 +3,9 @@
 
 # What a scene file becomes is in the scene's content hash; here is what turns a scene into radiance.
 file(GLOB sources ${SOURCE_DIR}/pathtracer/*.cpp ${SOURCE_DIR}/pathtracer/*.h ${SOURCE_DIR}/frames/quantities.*
-     ${SOURCE_DIR}/scenes/bilinear_lookup.* ${SOURCE_DIR}/scenes/camera.* ${SOURCE_DIR}/scenes/ggx.* ${SOURCE_DIR}/scenes/keyed_curve.*
-     ${SOURCE_DIR}/scenes/light.* ${SOURCE_DIR}/scenes/material.* ${SOURCE_DIR}/scenes/motion.*
+     ${SOURCE_DIR}/scenes/bilinear_lookup.* ${SOURCE_DIR}/scenes/camera.* ${SOURCE_DIR}/scenes/ggx.*
+     ${SOURCE_DIR}/scenes/keyed_curve.* ${SOURCE_DIR}/scenes/light.* ${SOURCE_DIR}/scenes/material.*
+     ${SOURCE_DIR}/scenes/motion.*
      ${SOURCE_DIR}/scenes/scene.* ${SOURCE_DIR}/scenes/specular_albedo.* ${SOURCE_DIR}/scenes/surface_sample.*
      ${SOURCE_DIR}/scenes/texture.*)
 list(FILTER sources EXCLUDE REGEX "/benchmark_[^/]*$")
