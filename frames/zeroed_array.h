@@ -1,4 +1,5 @@
-// Numbers that begin as 0 and take memory only where they are written to; parts of them can give it back.
+// Numbers, or vectors of them, that begin as 0 and take memory only where they are written to; parts of them can give
+// it back.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +20,8 @@ namespace plumb {
 
 template <typename T>
 class ZeroedArray {
-    static_assert(std::is_arithmetic_v<T>, "what all bits 0 stand for must be 0");
+    // All bits 0 have to stand for 0.
+    static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
 
 public:
     ZeroedArray() = default;

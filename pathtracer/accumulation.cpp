@@ -115,7 +115,7 @@ Accumulation::Value Accumulation::value(const StochasticPlane& plane, std::size_
     const auto added = [](const Value& one, const Value& other) {
         return Value{one.half_a + other.half_a, one.half_b + other.half_b, one.mean + other.mean};
     };
-    const auto constant = [](const std::vector<glm::vec3>& image, std::size_t at) {
+    const auto constant = [](const ZeroedArray<glm::vec3>& image, std::size_t at) {
         return image.empty() ? glm::vec3(0.0f) : image[at];
     };
     const auto emission = [&] {
@@ -154,8 +154,7 @@ Accumulation::Value Accumulation::value(const StochasticPlane& plane, std::size_
     return {};
 }
 
-void Accumulation::write(const std::vector<StochasticPlane>& planes, int samples, const ExactParts& exact,
-                         Frame& frame) {
+void Accumulation::write(const std::vector<StochasticPlane>& planes, int samples, ExactParts exact, Frame& frame) {
     struct Target {
         const StochasticPlane& plane;
         Image &mean, &half_a, &half_b, &variance;
@@ -181,15 +180,21 @@ void Accumulation::write(const std::vector<StochasticPlane>& planes, int samples
     };
     // Planes take as much memory as the sums: band by band, so that there are never both.
     constexpr int band = 32;
-    const std::size_t row_of_sums = channels_ * 2 * static_cast<std::size_t>(width_);
+    const auto give_rows_back = [&](auto& values, std::size_t row, int first, int end) {
+        if (!values.empty())
+            values.give_back(row * static_cast<std::size_t>(first), row * static_cast<std::size_t>(end));
+    };
+    const auto row = static_cast<std::size_t>(width_);
     for (int top = 0; top < height_; top += band) {
         const int end = std::min(height_, top + band);
-        parallel_for(end - top, [&](int row) {
+        parallel_for(end - top, [&](int y) {
             for (const Target& target : targets) {
-                for (int x = 0; x < width_; ++x) write_pixel(target, x, top + row);
+                for (int x = 0; x < width_; ++x) write_pixel(target, x, top + y);
             }
         });
-        sums_.give_back(row_of_sums * static_cast<std::size_t>(top), row_of_sums * static_cast<std::size_t>(end));
+        give_rows_back(sums_, 2 * channels_ * row, top, end);
+        give_rows_back(exact.emission, row, top, end);
+        give_rows_back(exact.direct, row, top, end);
     }
     sums_ = {};
 }

@@ -30,7 +30,7 @@ struct StochasticPlane {
 
 // What the sums do not contain because it is the same for every sample; empty images stand for 0.
 struct ExactParts {
-    std::vector<glm::vec3> emission, direct;
+    ZeroedArray<glm::vec3> emission, direct;
 };
 
 // Which samples a batch of paths, or of rays, belongs to.
@@ -59,11 +59,11 @@ public:
     // Adds a sample that met nothing: open sky.
     void add_background(std::size_t pixel, int half, const glm::vec3& emission);
 
-    // Adds each plane with its half_a., half_b. and variance. to `frame`, and gives the sums' memory back as it goes:
-    // nothing may be asked afterwards. `samples` is the number per pixel, even. The mean of `indirect` is the sum of
-    // the means of indirect.1, .2 and so on, that of `total` is emission + direct + indirect + reflection, added in
-    // this order in float; of all others it is that of the halves.
-    void write(const std::vector<StochasticPlane>& planes, int samples, const ExactParts& exact, Frame& frame);
+    // Adds each plane with its half_a., half_b. and variance. to `frame`, and gives the sums' memory and that of
+    // `exact` back as it goes: nothing may be asked afterwards. `samples` is the number per pixel, even. The mean of
+    // `indirect` is the sum of the means of indirect.1, .2 and so on, that of `total` is emission + direct + indirect +
+    // reflection, added in this order in float; of all others it is that of the halves.
+    void write(const std::vector<StochasticPlane>& planes, int samples, ExactParts exact, Frame& frame);
     // RMS standard error of the plane over its RMS; 0 for a black plane. The same bits whatever the number of threads.
     double relative_error(const StochasticPlane& plane, int samples, const ExactParts& exact) const;
     // False once a sum has grown so large that its last bits depend on the order of the samples. Throws ReferenceError

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bitset>
-#include <functional>
 
 #include <tbb/parallel_for.h>
 
@@ -81,21 +80,26 @@ PackedTextures::PackedTextures(const std::vector<Texture>& textures) : packed_(t
         return &tables.back();
     };
     std::size_t tile_count = 0;
-    std::vector<std::function<void()>> packings;
+    struct Codes {
+        const CodeTable *colour = nullptr, *alpha = nullptr;  // null: the texture is not packed
+    };
+    std::vector<Codes> codes(textures.size());
     for (std::size_t i = 0; i < textures.size(); ++i) {
         if (textures[i].is_wide()) continue;
         const CodeTable *colour = table_for(halves[i].colour), *alpha = table_for(halves[i].alpha);
         if (!colour || !alpha) continue;
+        codes[i] = {colour, alpha};
         Packed& packed = packed_[i];
         packed.colour = colour->values(), packed.alpha = alpha->values();
         packed.first_tile = tile_count;
         packed.tiles_per_row = (textures[i].width + tile_side - 1) / tile_side;
         tile_count +=
             static_cast<std::size_t>(packed.tiles_per_row) * ((textures[i].height + tile_side - 1) / tile_side);
-        packings.push_back([=, this] { pack(*colour, *alpha, packed_[i]); });
     }
     tiles_.resize(tile_count);
-    tbb::parallel_for(std::size_t{0}, packings.size(), [&](std::size_t i) { packings[i](); });
+    tbb::parallel_for(std::size_t{0}, textures.size(), [&](std::size_t i) {
+        if (codes[i].colour) pack(*codes[i].colour, *codes[i].alpha, packed_[i]);
+    });
 }
 
 glm::vec4 PackedTextures::sample(int texture, const glm::vec2& uv) const {

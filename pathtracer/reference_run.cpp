@@ -4,6 +4,7 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -96,8 +97,8 @@ ReferenceRun::ReferenceRun(const TracedScene& scene, const EnvironmentDistributi
 // What is the same for every sample through a pixel's centre.
 void ReferenceRun::find_exact_parts() {
     if (plan_.primary_rays_are_sampled) return;
-    exact_.emission.resize(hits_.size());
-    if (plan_.estimation.direct) exact_.direct.resize(hits_.size());
+    exact_.emission = ZeroedArray<glm::vec3>(hits_.size());
+    if (plan_.estimation.direct) exact_.direct = ZeroedArray<glm::vec3>(hits_.size());
     std::atomic<std::uint64_t> rays{hits_.size()};
     parallel_for(view_.height(), [&](int y) {
         std::uint64_t row_rays = 0;
@@ -244,23 +245,24 @@ ReferenceResult ReferenceRun::finish(bool complete) {
                            complete,
                            accumulation_.is_exact()};
     std::vector<StochasticPlane> sampled;
+    const View* previous = settings_.previous_view ? &*settings_.previous_view : nullptr;
+    std::vector<SurfaceHit> hits = std::move(hits_);
     for (const StochasticPlane& plane : plan_.stochastic) {
         if (plan_.primary_rays_are_sampled || plane.kind != StochasticPlane::Kind::emission) {
             sampled.push_back(plane);
         } else {
-            write_gbuffer_plane(scene_, view_, nullptr, hits_, plane.name, result.frame);
+            write_gbuffer_plane(scene_, view_, nullptr, hits, plane.name, result.frame);
         }
     }
-    accumulation_.write(sampled, samples_done(), exact_, result.frame);
-    exact_ = {};
-    const View* previous = settings_.previous_view ? &*settings_.previous_view : nullptr;
-    std::vector<SurfaceHit> hits = std::move(hits_);
     for (int layer = 1; layer <= plan_.layers; ++layer) {
         if (layer > 1) hits = next_layer(scene_, view_, hits, settings_.minimum_separation);
         for (const std::string& plane : plan_.gbuffer) {
             if (layer_of(plane) == layer) write_gbuffer_plane(scene_, view_, previous, hits, plane, result.frame);
         }
     }
+    // Last, since the sampled planes are more than the sums that they replace: the hits are gone by then.
+    hits = {};
+    accumulation_.write(sampled, samples_done(), std::move(exact_), result.frame);
     const Quantities& quantities = settings_.quantities;
     result.frame.facts = {{"renderer", fmt::format("path tracer, Embree {}", RTC_VERSION_STRING)},
                           {"scene", scene_.scene().name},
