@@ -136,9 +136,10 @@ int render(const ReferenceOptions& options, const CommonOptions& common) {
         return exit_fine;
     }
 
-    ReferenceResult result = tracer->render(task.view, task.settings, control);
+    SampledReference sampled = tracer->sample(task.view, task.settings, control);
     tracer.reset();
     task.forget_scene();
+    ReferenceResult result = std::move(sampled).result();
     progress.clear();
     if (!result.complete) {
         fmt::print("Interrupted after {} samples per pixel; ", result.samples);
@@ -155,11 +156,12 @@ int merge(const ReferenceOptions& options, const CommonOptions& common) {
     require_writable_folder(options.view.output);
     Task task(options, common);
     try {
-        ReferenceResult result =
+        SampledReference sampled =
             PathTracer(task.scene, options.span).merge(task.view, task.settings, options.merge, options.threads);
+        task.forget_scene();
+        ReferenceResult result = std::move(sampled).result();
         fmt::print("{}: {} samples per pixel of {} shards, {:.1f} s, {}\n", task.name(), result.samples,
                    options.merge.size(), result.seconds, million_rays_per_second(result.rays, result.seconds));
-        task.forget_scene();
         task.write(std::move(result));
     } catch (const ReferenceError& error) {
         throw ReferenceError(fmt::format(

@@ -1,6 +1,7 @@
 #include "pathtracer/reference.h"
 
-#include <optional>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -35,6 +36,12 @@ struct PathTracer::Implementation {
             return use(run);
         });
     }
+    template <typename Use>
+    SampledReference sampled(const View& view, const ReferenceSettings& settings, int threads, const Use& use) const {
+        auto parts = std::make_unique<SampledReference::Parts>(with_run(view, settings, threads, use));
+        parts->threads = threads;
+        return SampledReference(std::move(parts));
+    }
 
     TracedScene traced;
     EnvironmentDistribution environment;
@@ -45,10 +52,22 @@ PathTracer::PathTracer(const Scene& scene, const TimeSpan& span)
 PathTracer::~PathTracer() = default;
 PathTracer::PathTracer(PathTracer&&) noexcept = default;
 
-ReferenceResult PathTracer::render(const View& view, const ReferenceSettings& settings,
-                                   const ReferenceControl& control) const {
-    return implementation_->with_run(view, settings, control.threads,
-                                     [&](ReferenceRun& run) { return run.run(control); });
+SampledReference::SampledReference(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+SampledReference::~SampledReference() = default;
+SampledReference::SampledReference(SampledReference&&) noexcept = default;
+
+ReferenceResult SampledReference::result() && {
+    ReferenceResult& result = parts_->result;
+    tbb::task_arena(arena_size(parts_->threads)).execute([&] {
+        parts_->sums.write(parts_->planes, result.samples, std::move(parts_->exact), result.frame);
+    });
+    return std::move(result);
+}
+
+SampledReference PathTracer::sample(const View& view, const ReferenceSettings& settings,
+                                    const ReferenceControl& control) const {
+    return implementation_->sampled(view, settings, control.threads,
+                                    [&](ReferenceRun& run) { return run.run(control); });
 }
 
 bool PathTracer::render_shard(const View& view, const ReferenceSettings& settings, const std::filesystem::path& file,
@@ -57,9 +76,9 @@ bool PathTracer::render_shard(const View& view, const ReferenceSettings& setting
                                      [&](ReferenceRun& run) { return run.run_shard(file, control); });
 }
 
-ReferenceResult PathTracer::merge(const View& view, const ReferenceSettings& settings,
-                                  const std::vector<std::filesystem::path>& shards, int threads) const {
-    return implementation_->with_run(view, settings, threads, [&](ReferenceRun& run) { return run.merge(shards); });
+SampledReference PathTracer::merge(const View& view, const ReferenceSettings& settings,
+                                   const std::vector<std::filesystem::path>& shards, int threads) const {
+    return implementation_->sampled(view, settings, threads, [&](ReferenceRun& run) { return run.merge(shards); });
 }
 
 void PathTracer::set_recorder(RayRecorder* recorder) { implementation_->traced.set_recorder(recorder); }

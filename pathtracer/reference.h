@@ -114,6 +114,22 @@ struct LayerSettings {
 
 class RayRecorder;
 
+// A reference whose samples are all taken. Its planes need neither the scene nor the path tracer any more, so that
+// large ones can have their memory.
+class SampledReference {
+public:
+    struct Parts;
+
+    explicit SampledReference(std::unique_ptr<Parts> parts);
+    ~SampledReference();
+    SampledReference(SampledReference&&) noexcept;
+
+    ReferenceResult result() &&;
+
+private:
+    std::unique_ptr<Parts> parts_;
+};
+
 class PathTracer {
 public:
     // Keeps a reference to the scene. Instances that move do so over `span`: while the shutter is open, or from the
@@ -126,15 +142,19 @@ public:
     // The same scene, view and settings give the same bits whatever the number of threads, and whether or not the run
     // was interrupted. Throws ReferenceError for settings that make no sense and for a checkpoint of another run.
     ReferenceResult render(const View& view, const ReferenceSettings& settings,
-                           const ReferenceControl& control = {}) const;
+                           const ReferenceControl& control = {}) const {
+        return sample(view, settings, control).result();
+    }
+    SampledReference sample(const View& view, const ReferenceSettings& settings,
+                            const ReferenceControl& control = {}) const;
 
     // Renders settings.first_sample to settings.samples into `file`, to be merged. False where it was stopped.
     bool render_shard(const View& view, const ReferenceSettings& settings, const std::filesystem::path& file,
                       const ReferenceControl& control = {}) const;
-    // The result of all samples of the shards, which must follow each other from 0 on: the bits of one run. Throws
-    // ReferenceError for gaps, overlaps, and shards of another scene, view or settings.
-    ReferenceResult merge(const View& view, const ReferenceSettings& settings,
-                          const std::vector<std::filesystem::path>& shards, int threads = 0) const;
+    // All samples of the shards, which must follow each other from 0 on: the bits of one run. Throws ReferenceError for
+    // gaps, overlaps, and shards of another scene, view or settings.
+    SampledReference merge(const View& view, const ReferenceSettings& settings,
+                           const std::vector<std::filesystem::path>& shards, int threads = 0) const;
 
     // Every ray that render() traces by batches is told to `recorder` (null: none), for benchmarks.
     void set_recorder(RayRecorder* recorder);

@@ -201,7 +201,7 @@ bool ReferenceRun::sample(const ReferenceControl& control) {
     return !stopped;
 }
 
-ReferenceResult ReferenceRun::run(const ReferenceControl& control) { return finish(sample(control)); }
+SampledReference::Parts ReferenceRun::run(const ReferenceControl& control) { return finish(sample(control)); }
 
 bool ReferenceRun::run_shard(const std::filesystem::path& file, const ReferenceControl& control) {
     if (!sample(control)) return false;
@@ -209,7 +209,7 @@ bool ReferenceRun::run_shard(const std::filesystem::path& file, const ReferenceC
     return true;
 }
 
-ReferenceResult ReferenceRun::merge(const std::vector<std::filesystem::path>& shards) {
+SampledReference::Parts ReferenceRun::merge(const std::vector<std::filesystem::path>& shards) {
     if (shards.empty()) throw ReferenceError("there are no shards to merge; name at least one file");
     struct Shard {
         std::filesystem::path file;
@@ -237,7 +237,7 @@ ReferenceResult ReferenceRun::merge(const std::vector<std::filesystem::path>& sh
     return finish(true);
 }
 
-ReferenceResult ReferenceRun::finish(bool complete) {
+SampledReference::Parts ReferenceRun::finish(bool complete) {
     ReferenceResult result{Frame(view_.width(), view_.height()),
                            samples_done(),
                            state_.seconds,
@@ -260,9 +260,6 @@ ReferenceResult ReferenceRun::finish(bool complete) {
             if (layer_of(plane) == layer) write_gbuffer_plane(scene_, view_, previous, hits, plane, result.frame);
         }
     }
-    // Last, since the sampled planes are more than the sums that they replace: the hits are gone by then.
-    hits = {};
-    accumulation_.write(sampled, samples_done(), std::move(exact_), result.frame);
     const Quantities& quantities = settings_.quantities;
     result.frame.facts = {{"renderer", fmt::format("path tracer, Embree {}", RTC_VERSION_STRING)},
                           {"scene", scene_.scene().name},
@@ -287,7 +284,7 @@ ReferenceResult ReferenceRun::finish(bool complete) {
             settings_.oracle->layers == 0 ? "all" : fmt::format("{}", settings_.oracle->layers);
         result.frame.facts["oracle_separation"] = fmt::format("{}", settings_.oracle->minimum_separation);
     }
-    return result;
+    return {std::move(result), std::move(sampled), std::move(accumulation_), std::move(exact_)};
 }
 
 }  // namespace plumb

@@ -17,18 +17,27 @@
 
 namespace plumb {
 
+struct SampledReference::Parts {
+    ReferenceResult result;               // without what `planes` will add
+    std::vector<StochasticPlane> planes;  // that the sums are for
+    Accumulation sums;
+    ExactParts exact;
+    int threads = 0;  // 0: all
+};
+
 class ReferenceRun {
 public:
     // Keeps references to all.
     ReferenceRun(const TracedScene& scene, const EnvironmentDistribution& environment, const View& view,
                  const ReferenceSettings& settings);
 
-    ReferenceResult run(const ReferenceControl& control);
+    // The sums go with the parts: nothing may be asked afterwards, nor after merge().
+    SampledReference::Parts run(const ReferenceControl& control);
     // Renders the samples that are asked for and leaves their sums in `file`. False where it was stopped before the
     // end.
     bool run_shard(const std::filesystem::path& file, const ReferenceControl& control);
-    // The planes of all samples that the files hold together.
-    ReferenceResult merge(const std::vector<std::filesystem::path>& shards);
+    // All samples that the files hold together.
+    SampledReference::Parts merge(const std::vector<std::filesystem::path>& shards);
 
 private:
     void find_exact_parts();
@@ -37,7 +46,7 @@ private:
     void resume(const ReferenceControl& control);
     CheckpointKey key() const;
     double worst_error() const;
-    ReferenceResult finish(bool complete);  // the sums are gone afterwards
+    SampledReference::Parts finish(bool complete);
     int samples_done() const { return state_.end - state_.begin; }
 
     std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();

@@ -245,7 +245,7 @@ TEST_P(Splitting, OfSamplesOverShardsKeepsEveryBit) {
         shards.push_back(folder / fmt::format("{}.shard", i));
         ASSERT_TRUE(tracer.render_shard(view, part, shards.back(), {.threads = i + 1}));
     }
-    const ReferenceResult merged = tracer.merge(view, settings, shards);
+    const ReferenceResult merged = tracer.merge(view, settings, shards).result();
     std::filesystem::remove_all(folder);
     expect_same_bits(merged.frame, whole.frame);
     EXPECT_EQ(merged.samples, 32);

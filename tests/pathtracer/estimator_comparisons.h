@@ -138,7 +138,7 @@ inline Frame render_in_shards(const PathTracer& tracer, const View& view, Refere
     settings.first_sample = cut, settings.samples = samples;
     tracer.render_shard(view, settings, folder / "second");
     settings.first_sample = 0;
-    Frame frame = tracer.merge(view, settings, {folder / "first", folder / "second"}).frame;
+    Frame frame = tracer.merge(view, settings, {folder / "first", folder / "second"}).result().frame;
     std::filesystem::remove_all(folder);
     return frame;
 }
