@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -48,7 +49,12 @@ int print_list() {
     TerminalTable table({{"name"}, {"what"}, {"stands in"}});
     for (const std::string& name : reproduction_names()) {
         const Reproduction reproduction = load_reproduction(name);
-        table.add_row({name, reproduction.title, reproduction.sources()});
+        std::vector<std::string> row = {name, reproduction.title};
+        for (const std::string& source : reproduction.sources()) {
+            row.resize(2);
+            row.push_back(source);
+            table.add_row(std::exchange(row, {}));
+        }
     }
     fmt::print("{}", table.print());
     return exit_fine;

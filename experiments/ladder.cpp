@@ -176,8 +176,9 @@ std::string print_waterfalls(const std::vector<Waterfall>& waterfalls) {
         chart.series = {adds, removes};
         charts.push_back(std::move(chart));
     }
-    return print_svg(charts, 2, "What each approximation adds to the error",
-                     "Means over a scene's views; whiskers: 95 % intervals of what a rung adds.");
+    return print_svg(
+        charts, 2, "What each approximation adds to the error",
+        "Means over a scene's views; whiskers: 95 % intervals of what a rung adds; beside bars: its time.");
 }
 
 std::string print_waterfall_table(const std::vector<Waterfall>& waterfalls) {

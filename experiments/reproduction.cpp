@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 #include <sstream>
+#include <string_view>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -127,16 +128,22 @@ Measurements run_generation_experiment(const Reproduction& reproduction, const S
 
 }  // namespace
 
-std::string Reproduction::sources() const {
+std::vector<std::string> Reproduction::sources() const {
     std::vector<std::string> places;
-    const auto add = [&](const std::string& source) {
-        if (!source.empty() && std::ranges::find(places, source) == places.end()) places.push_back(source);
+    const auto add = [&](std::string_view list) {
+        constexpr std::string_view separator = "; ";
+        while (!list.empty()) {
+            const std::size_t end = std::min(list.find(separator), list.size());
+            const std::string place(list.substr(0, end));
+            if (std::ranges::find(places, place) == places.end()) places.push_back(place);
+            list.remove_prefix(std::min(end + separator.size(), list.size()));
+        }
     };
     for (const Drawing& drawing : drawings) add(drawing.source);
     for (const Figure& figure : presentation.figures) add(figure.source);
     for (const Originals& originals : presentation.originals) add(originals.source);
     for (const Claim& claim : presentation.claims) add(claim.source);
-    return fmt::format("{}", fmt::join(places, "; "));
+    return places;
 }
 
 std::vector<std::string> reproduction_names() {

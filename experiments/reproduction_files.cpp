@@ -39,7 +39,7 @@ public:
         write("measurements.json", print_measurements_json(measurements_));
         write("numbers.csv", print_cells_csv(measurements_.cells));
         readme_ = fmt::format("# {}\n\n{}\n\nMakes again: {}.\n", reproduction_.title, reproduction_.question,
-                              reproduction_.sources());
+                              fmt::join(reproduction_.sources(), "; "));
         if (measurements_.quick) add_text("This was a trial run (--quick): its figures prove nothing.");
         for (const std::string& scene : measurements_.left_out) add_text(fmt::format("Left out: {}", scene));
         for (std::size_t i = 0; i < reproduction_.drawings.size(); ++i) add_drawing(i);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <ranges>
 
 #include <fmt/format.h>
 
@@ -17,7 +18,9 @@ constexpr double panel_width = 330.0, panel_height = 270.0;
 constexpr double left = 64.0, right = 14.0, top = 30.0, bottom = 46.0;
 constexpr double head = 40.0, foot = 28.0;
 constexpr double legend_line = 15.0, letter_width = 6.3;
-constexpr double slant_height = 46.0;  // more for names of categories that stand aslant
+constexpr double slant_height = 46.0;                       // more for names of categories that stand aslant
+constexpr double slant_degrees = 25.0, slant_width = 0.91;  // the latter: its cosine
+constexpr double label_letter_width = 5.2, label_height = 9.0;
 constexpr const char* faint = "#dddddd";
 
 struct Axis {
@@ -87,6 +90,18 @@ bool has_slanted_categories(const Chart& chart) {
     return std::ranges::any_of(chart.categories, [&](const std::string& name) {
         return static_cast<double>(name.size()) * letter_width > room;
     });
+}
+
+// By how much slanted names reach out of their panel to the left.
+double overhang(const Chart& chart) {
+    if (!has_slanted_categories(chart)) return 0.0;
+    const double room = (panel_width - left - right) / static_cast<double>(chart.categories.size());
+    double most = 0.0;
+    for (std::size_t i = 0; i < chart.categories.size(); ++i) {
+        const double end = left + (static_cast<double>(i) + 0.5) * room;
+        most = std::max(most, slant_width * letter_width * static_cast<double>(chart.categories[i].size()) - end);
+    }
+    return most;
 }
 
 // One panel being drawn: the chart, its axes, and how much room its bars have.
@@ -175,7 +190,7 @@ private:
         for (std::size_t i = 0; i < chart_.categories.size(); ++i) {
             const double x = x_.place(static_cast<double>(i)), y = y_.from + (aslant ? 11.0 : 14.0);
             svg += aslant ? svg_text(x + 4.0, y, "end", chart_.categories[i],
-                                     fmt::format("transform=\"rotate(-25 {:.1f} {:.1f})\"", x + 4.0, y))
+                                     fmt::format("transform=\"rotate({} {:.1f} {:.1f})\"", -slant_degrees, x + 4.0, y))
                           : svg_text(x, y, "middle", chart_.categories[i]);
         }
         return svg;
@@ -205,7 +220,7 @@ private:
     std::string draw_label(const std::string& label, double x, double y) const {
         const bool to_the_left = x > 0.5 * (x_.from + x_.to);
         return svg_text(x + (to_the_left ? -6.0 : 6.0), y - 4.0, to_the_left ? "end" : "start", label,
-                        "font-size=\"9\"");
+                        fmt::format("font-size=\"{}\"", label_height));
     }
 
     double category_width() const {
@@ -217,7 +232,8 @@ private:
         const int places = chart_.is_waterfall ? 1 : count;
         const double width = 0.8 * room / places;
         std::string svg;
-        for (const ChartPoint& point : series.points) {
+        for (std::size_t i = 0; i < series.points.size(); ++i) {
+            const ChartPoint& point = series.points[i];
             if (!can_show(point)) continue;
             const double offset = chart_.is_waterfall ? 0.0 : (index - 0.5 * (places - 1)) * width;
             const double middle = x_.place(point.x) + offset;
@@ -229,8 +245,24 @@ private:
             // To the next bar, which begins where this one ends.
             if (chart_.is_waterfall && middle + room < x_.to)
                 svg += svg_line(middle + 0.4 * room, end, middle + 0.6 * room, end, svg_ink, "stroke-width=\"0.7\"");
+            if (i < series.labels.size() && !series.labels[i].empty())
+                svg += draw_bar_label(series.labels[i], point, middle, std::max(base, end));
         }
         return svg;
+    }
+
+    // Upwards, below the bar if it floats high enough, else above it.
+    std::string draw_bar_label(const std::string& label, const ChartPoint& point, double middle,
+                               double lower_end) const {
+        constexpr double gap = 4.0;
+        const double low = has_error_bar(point) ? std::max(lower_end, y_.place(point.lower)) : lower_end;
+        const double x = middle + 0.35 * label_height;
+        const bool below = low + gap + label_letter_width * static_cast<double>(label.size()) < y_.from;
+        double high = std::min(y_.place(point.y), lower_end);
+        if (has_error_bar(point)) high = std::min(high, y_.place(point.upper));
+        const double y = below ? low + gap : high - gap;
+        return svg_text(x, y, below ? "end" : "start", label,
+                        fmt::format("font-size=\"{}\" transform=\"rotate(-90 {:.1f} {:.1f})\"", label_height, x, y));
     }
 
     struct Corner {
@@ -340,14 +372,16 @@ std::string print_svg(const std::vector<Chart>& charts, int columns, const std::
                       const std::string& note) {
     const int rows = (static_cast<int>(charts.size()) + columns - 1) / columns;
     const double row_height = panel_height + (std::ranges::any_of(charts, has_slanted_categories) ? slant_height : 0.0);
-    const double panels_width = columns * panel_width;
+    const double margin = charts.empty() ? 0.0 : std::ranges::max(charts | std::views::transform(overhang));
+    const double panels_width = margin + columns * panel_width;
     const double width = std::max({panels_width, 20.0 + static_cast<double>(title.size()) * svg_title_letter_width,
                                    20.0 + static_cast<double>(note.size()) * letter_width});
     const double height = head + rows * row_height + (note.empty() ? 8.0 : foot);
     std::string svg = open_svg(width, height, title);
     for (std::size_t i = 0; i < charts.size(); ++i) {
         const int column = static_cast<int>(i) % columns, row = static_cast<int>(i) / columns;
-        svg += Panel(charts[i], 0.5 * (width - panels_width) + column * panel_width, head + row * row_height).draw();
+        svg += Panel(charts[i], 0.5 * (width - panels_width) + margin + column * panel_width, head + row * row_height)
+                   .draw();
     }
     if (!note.empty()) svg += svg_text(0.5 * width, height - 10.0, "middle", note);
     return svg + "</svg>\n";

@@ -21,7 +21,7 @@ struct ChartSeries {
     // is a waterfall.
     enum class Style { markers, line, dashed_line, markers_and_line, bars } style = Style::markers_and_line;
     enum class Marker { circle, square, triangle } marker = Marker::circle;
-    std::vector<std::string> labels = {};  // beside the points, in their order
+    std::vector<std::string> labels = {};  // beside the points, above or below the bars, in their order
 };
 
 enum class ChartScale { logarithmic, linear };

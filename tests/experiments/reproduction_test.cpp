@@ -6,6 +6,7 @@
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <set>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -70,7 +71,10 @@ TEST(Reproductions, EveryOneCanBeReadAndSaysWhereItStands) {
         const Reproduction reproduction = load_reproduction(name);
         EXPECT_FALSE(reproduction.title.empty());
         EXPECT_FALSE(reproduction.question.empty());
-        EXPECT_THAT(reproduction.sources(), testing::MatchesRegex("00[0-3], .*"));
+        const std::vector<std::string> sources = reproduction.sources();
+        EXPECT_FALSE(sources.empty());
+        EXPECT_THAT(sources, testing::Each(testing::MatchesRegex("00[0-3], [^;]*")));
+        EXPECT_EQ(std::set<std::string>(sources.begin(), sources.end()).size(), sources.size());
         EXPECT_FALSE(reproduction.presentation.figures.empty() && reproduction.drawings.empty());
         claims += reproduction.presentation.claims.size();
     }
