@@ -30,8 +30,7 @@ struct Reproduction {
     Presentation presentation;
     std::vector<Drawing> drawings;  // of a file that has nothing else, and nothing to run
 
-    // Where in the seeds its figures, numbers and claims stand, each place once: "000, table 4.2", "000,
-    // section 4.1.1".
+    // Where in the seeds its figures, numbers and claims stand, each place once: "000, table 4.2".
     std::vector<std::string> sources() const;
 };
 
