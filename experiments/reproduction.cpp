@@ -1,6 +1,7 @@
 #include "experiments/reproduction.h"
 
 #include <algorithm>
+#include <ranges>
 #include <set>
 #include <sstream>
 #include <string_view>
@@ -131,12 +132,9 @@ Measurements run_generation_experiment(const Reproduction& reproduction, const S
 std::vector<std::string> Reproduction::sources() const {
     std::vector<std::string> places;
     const auto add = [&](std::string_view list) {
-        constexpr std::string_view separator = "; ";
-        while (!list.empty()) {
-            const std::size_t end = std::min(list.find(separator), list.size());
-            const std::string place(list.substr(0, end));
+        for (const auto part : std::views::split(list, std::string_view("; "))) {
+            const std::string place(part.begin(), part.end());
             if (std::ranges::find(places, place) == places.end()) places.push_back(place);
-            list.remove_prefix(std::min(end + separator.size(), list.size()));
         }
     };
     for (const Drawing& drawing : drawings) add(drawing.source);
