@@ -60,7 +60,7 @@ void GBufferDraw::draw(const Frustum& frustum, const Frustum* next, int copies) 
             geometry_.bind_textures(scene_.materials[draw.material], geometry_.variants()[draw.variant]);
         }
         variant = draw.variant, material = draw.material;
-        geometry_.draw(draw, GL_TRIANGLES, copies);
+        geometry_.draw(draw, copies);
     }
 }
 

@@ -39,6 +39,11 @@ struct MeshRange {
     GLsizei index_count = 0;
 };
 
+// OpenGL takes an offset into the bound index buffer in the place of a pointer.
+const void* index_offset(std::size_t index) {
+    return reinterpret_cast<const void*>(index * sizeof(std::uint32_t));  // NOLINT(performance-no-int-to-ptr)
+}
+
 void append_shared(const Mesh& mesh, std::vector<Vertex>& vertices, std::vector<std::uint32_t>& indices) {
     for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
         vertices.push_back({mesh.positions[i], mesh.normals[i], mesh.uvs.empty() ? glm::vec2(0.0f) : mesh.uvs[i]});
@@ -253,16 +258,26 @@ void SceneGeometry::bind_textures(const Material& material, const MaterialVarian
     if (variant.alpha_texture) textures_[material.alpha_texture].bind(3);
 }
 
-void SceneGeometry::draw(const SceneDraw& draw, GLenum mode, int copies) const {
+void SceneGeometry::bind_instance(const SceneDraw& draw) const {
     const GladGLContext& gl = context_.gl;
     gl.BindBufferRange(GL_UNIFORM_BUFFER, instance_binding, instances_.id(),
                        static_cast<GLintptr>(static_cast<std::size_t>(draw.instance) * instance_stride_),
                        sizeof(InstanceBlock));
     gl.FrontFace(draw.mirrored ? GL_CW : GL_CCW);
-    // OpenGL takes the offset into the bound buffer in the place of a pointer.
-    // NOLINTNEXTLINE(performance-no-int-to-ptr)
-    const auto* offset = reinterpret_cast<const void*>(draw.first_index * sizeof(std::uint32_t));
-    gl.DrawElementsInstancedBaseVertex(mode, draw.index_count, GL_UNSIGNED_INT, offset, copies, draw.first_vertex);
+}
+
+void SceneGeometry::draw(const SceneDraw& draw, int copies) const {
+    bind_instance(draw);
+    context_.gl.DrawElementsInstancedBaseVertex(GL_TRIANGLES, draw.index_count, GL_UNSIGNED_INT,
+                                                index_offset(draw.first_index), copies, draw.first_vertex);
+}
+
+void SceneGeometry::draw_patches(const SceneDraw& draw, int most_patches) const {
+    bind_instance(draw);
+    for (GLsizei index = 0; index < draw.index_count; index += 3 * most_patches) {
+        context_.gl.DrawElementsBaseVertex(GL_PATCHES, std::min(3 * most_patches, draw.index_count - index),
+                                           GL_UNSIGNED_INT, index_offset(draw.first_index + index), draw.first_vertex);
+    }
 }
 
 }  // namespace plumb

@@ -62,8 +62,10 @@ public:
     void bind() const { vertex_array_.bind(); }
     // Binds the textures that `variant` reads to units 0 to 3 (material.glsl).
     void bind_textures(const Material& material, const MaterialVariant& variant) const;
-    // Draws with the current program, as triangles or as patches of them; bind() comes first.
-    void draw(const SceneDraw& draw, GLenum mode = GL_TRIANGLES, int copies = 1) const;
+    // Draws with the current program; bind() comes first.
+    void draw(const SceneDraw& draw, int copies = 1) const;
+    // As patches of three vertices, `most_patches` at a time.
+    void draw_patches(const SceneDraw& draw, int most_patches) const;
 
     static constexpr GLuint first_free_texture_unit = 4;
 
@@ -81,6 +83,7 @@ private:
     void upload_meshes();
     void upload_instances();
     void upload_textures();
+    void bind_instance(const SceneDraw& draw) const;
     void find_moving();
 
     GlContext& context_;

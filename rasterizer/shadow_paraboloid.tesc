@@ -4,6 +4,8 @@
 layout(vertices = 3) out;
 
 uniform vec3 light_position;
+uniform float side;     // 1: the half towards +z, -1: the other
+uniform float overlap;  // sine of the angle by which each half reaches below its horizon
 uniform float most_segments;
 uniform float segment_angle;  // radians that a segment should cover, seen from the light
 
@@ -27,6 +29,9 @@ float segments(vec3 a, vec3 b) {
     return clamp(ceil(length_of_edge / max(segment_angle * distance, 1e-20)), 1.0, most_segments);
 }
 
+// The directions that shadow_paraboloid.tese clips are a cone: a triangle lies in it when its corners do.
+bool is_clipped(vec3 from_light) { return side * from_light.z < -overlap * length(from_light); }
+
 void main() {
     gl_out[gl_InvocationID].gl_Position = gl_in[gl_InvocationID].gl_Position;
 #ifdef TEXTURE_COORDINATES
@@ -35,6 +40,10 @@ void main() {
     if (gl_InvocationID != 0) return;
     vec3 a = gl_in[0].gl_Position.xyz - light_position, b = gl_in[1].gl_Position.xyz - light_position;
     vec3 c = gl_in[2].gl_Position.xyz - light_position;
+    if (is_clipped(a) && is_clipped(b) && is_clipped(c)) {  // half of the scene is, and levels of 0 drop it
+        gl_TessLevelOuter[0] = gl_TessLevelOuter[1] = gl_TessLevelOuter[2] = gl_TessLevelInner[0] = 0.0;
+        return;
+    }
     gl_TessLevelOuter[0] = segments(b, c);
     gl_TessLevelOuter[1] = segments(c, a);
     gl_TessLevelOuter[2] = segments(a, b);

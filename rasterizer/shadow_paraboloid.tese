@@ -4,8 +4,9 @@
 layout(triangles, equal_spacing, ccw) in;
 
 uniform vec3 light_position;
-uniform float side;       // 1: the half towards +z, -1: the other
-uniform float disc_scale; // radius of the horizon in the map, whose half side is 1
+uniform float side;        // 1: the half towards +z, -1: the other
+uniform float overlap;     // sine of the angle by which each half reaches below its horizon
+uniform float disc_scale;  // radius of the horizon in the map, whose half side is 1
 
 out float gl_ClipDistance[1];
 out vec3 from_light;
@@ -13,9 +14,6 @@ out vec3 from_light;
 in vec2 patch_uv[];
 out vec2 uv;
 #endif
-
-// Sine of the angle by which each half reaches below its horizon: for lookups that are filtered across it.
-const float overlap = 0.05;
 
 void main() {
     vec4 world = gl_TessCoord.x * gl_in[0].gl_Position + gl_TessCoord.y * gl_in[1].gl_Position +

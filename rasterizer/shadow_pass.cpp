@@ -27,6 +27,12 @@ glm::mat4 clip_from_world(const ShadowCube& cube, const CubeFace& face) {
     return projection * view;
 }
 
+// Sine of the angle by which each paraboloid reaches below its horizon: for lookups that are filtered across it.
+constexpr float paraboloid_overlap = 0.05f;
+
+// Vertices that a triangle with `segments` on every edge and inside is cut into, at most: rings of 3 n, 3 (n - 2)...
+constexpr int patch_vertices(int segments) { return 3 * (segments / 2 + 1) * (segments / 2 + 1) + 1; }
+
 // Radius of the horizon in a paraboloid map, whose half side is 1: two texels are left around it for filtering.
 float disc_scale(int size) { return 1.0f - 4.0f / static_cast<float>(size); }
 
@@ -191,10 +197,10 @@ bool ShadowPass::may_see(const Target& target, const Frustum& frustum, const Bou
         case Projection::whole_cube:
             return true;
         case Projection::paraboloid: {
-            // Wholly behind the horizon, and below its overlap (shadow_paraboloid.tese), even at the farthest.
+            // Wholly behind the horizon, and below its overlap, even at the farthest.
             const float height =
                 target.side * ((target.side > 0.0f ? box.upper.z : box.lower.z) - target.cube.position.z);
-            return height > -0.05f * target.cube.range;
+            return height > -paraboloid_overlap * target.cube.range;
         }
     }
     return true;
@@ -216,6 +222,7 @@ void ShadowPass::set_uniforms(const Program& program, const Target& target) cons
     if (target.projection == Projection::paraboloid) {
         const auto size = static_cast<float>(settings_.paraboloid_size);
         program.set("side", target.side);
+        program.set("overlap", paraboloid_overlap);
         program.set("disc_scale", disc_scale(settings_.paraboloid_size));
         program.set("most_segments", static_cast<float>(settings_.paraboloid_tessellation));
         program.set("segment_angle", 4.0f / std::sqrt(size));
@@ -229,7 +236,9 @@ void ShadowPass::draw(const Target& target) const {
     framebuffers_[target.framebuffer].bind();
     const bool clips = target.clips() || target.projection == Projection::paraboloid;
     if (clips) gl.Enable(GL_CLIP_DISTANCE0);
-    const GLenum mode = target.projection == Projection::paraboloid ? GL_PATCHES : GL_TRIANGLES;
+    // Mesa's software rasterisers number the vertices that a draw's patches are cut into with 16 bits (draw_tess.c),
+    // and beyond them join wrong ones.
+    const int most_patches = 65536 / patch_vertices(settings_.paraboloid_tessellation);
     const std::vector<const Program*>& programs = programs_.at({target.projection, target.clips()});
     const Frustum frustum(target.clip_from_world);
     int variant = -1, material = -1;
@@ -244,7 +253,11 @@ void ShadowPass::draw(const Target& target) const {
             geometry_.bind_textures(scene_.materials[draw.material], coverage_[draw.variant]);
         }
         variant = draw.variant, material = draw.material;
-        geometry_.draw(draw, mode);
+        if (target.projection == Projection::paraboloid) {
+            geometry_.draw_patches(draw, most_patches);
+        } else {
+            geometry_.draw(draw);
+        }
     }
     if (clips) gl.Disable(GL_CLIP_DISTANCE0);
 }

@@ -79,6 +79,27 @@ TEST_P(ShadowAlternativesTest, ParaboloidsNeedTessellation) {
     EXPECT_LE(wrong[2], 4) << "a part in a thousand of 4800 pixels, as for the cube";
 }
 
+// Of more vertices than 16 bits can number: Mesa's software rasterisers would join wrong ones within one draw.
+TEST_P(ShadowAlternativesTest, ParaboloidsOfManyFinelyCutTrianglesCastNoOtherShadows) {
+    Scene scene = make_shadow_scene();
+    scene.point_lights.push_back({"lamp", {0.4f, 0.9f, 0.9f}, {9.0f, 7.0f, 5.0f}});
+    Method method = plain_method();
+    method.direct.shadow.point_map = PointShadowMap::dual_paraboloid;
+    method.direct.shadow.paraboloid_size = 1024;
+    const Image once = render(context(), scene, near_view(), {"direct"}, method).plane("direct");
+    for (Mesh& mesh : scene.meshes) {
+        const std::vector<glm::uvec3> triangles = mesh.triangles;
+        const std::size_t copies = 600 / triangles.size() + 1;
+        for (std::size_t i = 1; i < copies; ++i) {
+            mesh.triangles.insert(mesh.triangles.end(), triangles.begin(), triangles.end());
+        }
+    }
+    const Image many_times = render(context(), scene, near_view(), {"direct"}, method).plane("direct");
+    int different = 0;
+    for (std::size_t i = 0; i < once.values().size(); ++i) different += once.values()[i] != many_times.values()[i];
+    EXPECT_EQ(different, 0) << "of " << once.values().size() << " values";
+}
+
 TEST_P(ShadowAlternativesTest, ParaboloidsTakeAThirdOfTheMemoryOfACube) {
     const Scene scene = make_lamp_scene();
     Method method = plain_method();
