@@ -7,6 +7,7 @@
 #include <ranges>
 
 #include <fmt/format.h>
+#include <glm/trigonometric.hpp>
 
 #include "experiments/svg_parts.h"
 
@@ -18,8 +19,8 @@ constexpr double panel_width = 330.0, panel_height = 270.0;
 constexpr double left = 64.0, right = 14.0, top = 30.0, bottom = 46.0;
 constexpr double head = 40.0, foot = 28.0;
 constexpr double legend_line = 15.0, letter_width = 6.3;
-constexpr double slant_height = 46.0;                       // more for names of categories that stand aslant
-constexpr double slant_degrees = 25.0, slant_width = 0.91;  // the latter: its cosine
+constexpr double slant_height = 46.0;  // more for names of categories that stand aslant
+constexpr double slant_degrees = 25.0;
 constexpr double label_letter_width = 5.2, label_height = 9.0;
 constexpr const char* faint = "#dddddd";
 
@@ -96,10 +97,11 @@ bool has_slanted_categories(const Chart& chart) {
 double overhang(const Chart& chart) {
     if (!has_slanted_categories(chart)) return 0.0;
     const double room = (panel_width - left - right) / static_cast<double>(chart.categories.size());
+    const double advance = letter_width * std::cos(glm::radians(slant_degrees));  // from letter to letter, to the side
     double most = 0.0;
     for (std::size_t i = 0; i < chart.categories.size(); ++i) {
         const double end = left + (static_cast<double>(i) + 0.5) * room;
-        most = std::max(most, slant_width * letter_width * static_cast<double>(chart.categories[i].size()) - end);
+        most = std::max(most, advance * static_cast<double>(chart.categories[i].size()) - end);
     }
     return most;
 }
