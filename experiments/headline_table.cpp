@@ -134,7 +134,8 @@ private:
                fmt::format(
                    "\nGeometric means and, in brackets, 95 % intervals over views or paths, where there are three at "
                    "least; of an oracle, the best that any method could make of what so many layers hold. Counts in "
-                   "brackets: the truth was too noisy for a statement about the rest. {}x{}, {} on {}; `{}`, {}{}.\n",
+                   "brackets leave out where an error is nought or within the truth's noise, which forms no ratio. "
+                   "{}x{}, {} on {}; `{}`, {}{}.\n",
                    experiment.width, experiment.height, results_.gl_renderer, results_.system.cpu, results_.command,
                    results_.started, experiment.quick ? ", a trial run that proves nothing" : "");
     }

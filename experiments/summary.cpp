@@ -52,6 +52,11 @@ std::string verdict(const RatioSummary& error, const RatioSummary& time, const c
     return fmt::format("The interval includes 1: these {} do not show that it changes the error.", places);
 }
 
+// " (over 3 paths)" where fewer tell the flicker than the error.
+std::string flicker_count(const RowGroup& group, const RatioSummary& flicker, const RatioSummary& error) {
+    return flicker.count == error.count ? "" : fmt::format(" (over {})", group.count(flicker.count));
+}
+
 // One method against the baseline.
 std::string compare(const RowGroup& group, const std::string& method, const std::string& baseline) {
     const RowRatio error = ratio_between(group, method, baseline, RowQuantity::error);
@@ -62,7 +67,8 @@ std::string compare(const RowGroup& group, const std::string& method, const std:
                            group.paths ? "path" : "view", method, error.refused);
     }
     std::string text = fmt::format("{}: {} has {} the RMSE", group.name(), method, ratio_text(error.ratio));
-    if (flicker.count > 0) text += fmt::format(" and {} the flicker", ratio_text(flicker));
+    if (flicker.count > 0)
+        text += fmt::format(" and {} the flicker{}", ratio_text(flicker), flicker_count(group, flicker, error.ratio));
     return text + fmt::format(" of {} over {}, lower in {} of them{}, and takes {} its time. {}", baseline,
                               group.count(error.ratio.count), error.ratio.below_one,
                               error.refused > 0 ? fmt::format(" ({} more refused)", error.refused) : "",
@@ -84,7 +90,8 @@ std::vector<std::string> compare_oracles(const RowGroup& group) {
         }
         std::string text = fmt::format("In principle, {}: the best possible RMSE of '{}' is {} that of '{}'",
                                        group.name(), name, ratio_text(error), fewer);
-        if (flicker.count > 0) text += fmt::format(", its flicker {}", ratio_text(flicker));
+        if (flicker.count > 0)
+            text += fmt::format(", its flicker {}{}", ratio_text(flicker), flicker_count(group, flicker, error));
         sentences.push_back(fmt::format("{}, over {}.", text, group.count(error.count)));
     }
     return sentences;
