@@ -4,8 +4,8 @@
 // One column for each plane, truth and kind of place (views, camera paths). First the values themselves: error, flicker
 // and time of each method, error and flicker of each oracle, geometric means over the places that all methods, or all
 // oracles, tell. Then ratios with Student's 95 % intervals, place by place: each method to the baseline, each oracle to
-// the one with fewer layers. Where some places tell nothing, because an error is nought or within the truth's noise, the
-// number of those that do stands behind the value. Below the table stand the sentences of summary.h.
+// the one with fewer layers. Where some places tell nothing, because an error is nought or within the truth's noise,
+// the number of those that do stands behind the value. Below the table stand the sentences of summary.h.
 #pragma once
 
 #include <string>
