@@ -129,7 +129,7 @@ int run(TuneCommandOptions options, const CommonOptions& common) {
     int trials = 0;
     const TuningResult result = tune(start, parameters, options.settings, [&](const Method& method) {
         if (options.run.stop->load()) throw ConfigError("interrupted: nothing was written; truths are kept");
-        const TuningCost cost = views.training_cost(method);
+        TuningCost cost = views.training_cost(method);
         std::string values;
         Method copy = method;
         for (const MethodParameter& parameter : method_parameters(copy)) {

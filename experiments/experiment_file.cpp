@@ -337,6 +337,7 @@ std::vector<LeftOutScene> leave_out_absent_scenes(Experiment& experiment, Loaded
     });
     if (experiment.scenes.empty()) {
         std::vector<std::string> messages;
+        messages.reserve(left_out.size());
         for (const LeftOutScene& scene : left_out) messages.push_back(scene.message);
         throw SceneError(fmt::format("{}: all of its scenes are optional, and none is here: {}",
                                      experiment.file.string(), fmt::join(messages, "; ")));

@@ -210,6 +210,7 @@ ResultTable make_table(const Figure& figure, const std::vector<Cell>& cells) {
     table.rows = keys;
     for (const std::string& column : figure.columns) {
         std::vector<TableEntry> entries;
+        entries.reserve(keys.size());
         for (const std::vector<std::string>& key : keys) entries.push_back(table_entry(figure, column, key, cells));
         for (std::size_t i = 0; i < keys.size(); ++i) table.rows[i].push_back(mean_text(entries[i], entries));
     }

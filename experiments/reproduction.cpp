@@ -1,7 +1,7 @@
 #include "experiments/reproduction.h"
 
 #include <algorithm>
-#include <ranges>
+#include <regex>
 #include <set>
 #include <sstream>
 #include <string_view>
@@ -131,10 +131,12 @@ Measurements run_generation_experiment(const Reproduction& reproduction, const S
 
 std::vector<std::string> Reproduction::sources() const {
     std::vector<std::string> places;
-    const auto add = [&](std::string_view list) {
-        for (const auto part : std::views::split(list, std::string_view("; "))) {
-            const std::string place(part.begin(), part.end());
-            if (std::ranges::find(places, place) == places.end()) places.push_back(place);
+    const std::regex separator("; ");
+    const auto add = [&](const std::string& list) {
+        const std::sregex_token_iterator parts(list.begin(), list.end(), separator, -1), none;
+        for (auto part = parts; part != none; ++part) {
+            const std::string place = part->str();
+            if (!place.empty() && std::ranges::find(places, place) == places.end()) places.push_back(place);
         }
     };
     for (const Drawing& drawing : drawings) add(drawing.source);

@@ -40,6 +40,7 @@ std::vector<std::string> RowGroup::oracles() const {
         }
     }
     std::vector<std::string> list;
+    list.reserve(names.size());
     for (const auto& entry : names) list.push_back(entry.second);
     return list;
 }

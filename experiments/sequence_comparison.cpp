@@ -15,9 +15,9 @@ void whole_images_first(std::vector<MeasuredThing>& things) {
 }
 
 void add_measures(MeasuredThing& thing, const PathStabilityResult& result) {
-    for (auto& [name, value] : result.measures()) {
-        std::erase_if(thing.measures, [&](const auto& measure) { return measure.first == name; });  // of one frame
-        thing.measures.emplace_back(name, value);
+    for (const auto& of_path : result.measures()) {
+        std::erase_if(thing.measures, [&](const auto& of_frame) { return of_frame.first == of_path.first; });
+        thing.measures.push_back(of_path);
     }
 }
 

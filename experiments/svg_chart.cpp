@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <ranges>
 
 #include <fmt/format.h>
 #include <glm/trigonometric.hpp>
@@ -374,7 +373,8 @@ std::string print_svg(const std::vector<Chart>& charts, int columns, const std::
                       const std::string& note) {
     const int rows = (static_cast<int>(charts.size()) + columns - 1) / columns;
     const double row_height = panel_height + (std::ranges::any_of(charts, has_slanted_categories) ? slant_height : 0.0);
-    const double margin = charts.empty() ? 0.0 : std::ranges::max(charts | std::views::transform(overhang));
+    double margin = 0.0;
+    for (const Chart& chart : charts) margin = std::max(margin, overhang(chart));
     const double panels_width = margin + columns * panel_width;
     const double width = std::max({panels_width, 20.0 + static_cast<double>(title.size()) * svg_title_letter_width,
                                    20.0 + static_cast<double>(note.size()) * letter_width});

@@ -59,7 +59,8 @@ int writing_threads(const Frame& frame) {
     for (const std::string& name : frame.plane_names()) {
         channels += static_cast<std::size_t>(frame.plane(name).channels());
     }
-    const std::size_t per_thread = 2 * 16 * sizeof(float) * channels * static_cast<std::size_t>(frame.width());
+    const std::size_t per_thread =
+        std::size_t{2} * 16 * sizeof(float) * channels * static_cast<std::size_t>(frame.width());
     const auto affordable = static_cast<int>(std::max<std::size_t>(1, (std::size_t{128} << 20) / per_thread));
     return std::min(affordable, Imf::globalThreadCount());
 }

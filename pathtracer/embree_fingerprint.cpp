@@ -14,7 +14,7 @@
 namespace plumb {
 namespace {
 
-constexpr unsigned triangles_of_a_kind = 64;
+constexpr std::size_t triangles_of_a_kind = 64;
 constexpr unsigned rays_of_a_kind = 2048;
 constexpr int function_values = 256;  // of each function
 

@@ -29,7 +29,8 @@ constexpr int whole_groups(int count) { return (count + lane_group - 1) & -lane_
 
 // Before the definition of a function that is nothing but loops over lanes: compiled for AVX-512 too, which has twice
 // the registers, and taken where the machine has it, as Embree does. The same bits: nothing is contracted or reordered.
-#ifdef PLUMBLINE_DISPATCHES
+// Clang takes the attribute at a function's first declaration alone.
+#if defined(PLUMBLINE_DISPATCHES) && !defined(__clang__)
 #define PLUMBLINE_FOR_EACH_MACHINE __attribute__((target_clones("default", "arch=x86-64-v4")))
 #else
 #define PLUMBLINE_FOR_EACH_MACHINE

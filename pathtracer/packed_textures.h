@@ -40,7 +40,7 @@ private:
         std::array<std::uint8_t, 4> codes;  // red, green, blue, alpha
     };
     struct alignas(64) Tile {
-        std::array<Texel, tile_side * tile_side> texels;  // row-major
+        std::array<Texel, std::size_t{tile_side} * tile_side> texels;  // row-major
     };
     using Values = std::array<float, 256>;
     struct Packed {

@@ -79,12 +79,13 @@ PlanePool::Place PlanePool::find_place(GLenum format, int layers, int levels) {
     for (Storage& storage : storages_) {
         const GlTexture& texture = storage.texture;
         if (bytes_per_texel(texture.format()) != bytes_per_texel(format) || texture.levels() < levels) continue;
-        const auto run = std::ranges::search_n(storage.holders, layers, nullptr);
-        if (run.empty()) continue;
-        const std::pair left{texture.levels() - levels, std::ranges::count(storage.holders, nullptr) - layers};
+        const std::vector<const GlTexture*>& holders = storage.holders;
+        const auto run = std::search_n(holders.begin(), holders.end(), layers, nullptr);
+        if (run == holders.end()) continue;
+        const std::pair left{texture.levels() - levels, std::ranges::count(holders, nullptr) - layers};
         if (left >= least_left) continue;
         least_left = left;
-        best = {&storage, static_cast<int>(run.begin() - storage.holders.begin())};
+        best = {&storage, static_cast<int>(run - holders.begin())};
     }
     return best;
 }

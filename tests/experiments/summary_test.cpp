@@ -50,8 +50,9 @@ TEST(Summary, TellsOfCameraPathsWithTheirFlicker) {
                       HasSubstr("lower in 3 of them"), HasSubstr("takes 1.50 times"),
                       HasSubstr("these paths do not show that it changes the error")));
     RunResults steady = second_layer_results();
-    std::ranges::find_if(steady.rows, [](const ResultRow& row) { return row.stability && row.method == "two"; })
-        ->stability->flicker.lower = 0.0;
+    std::ranges::find_if(steady.rows, [](const ResultRow& row) {
+        return row.stability && row.method == "two";
+    })->stability->flicker.lower = 0.0;
     EXPECT_THAT(summarise(steady)[3], HasSubstr("the flicker (over 2 paths) of one over 3 paths"));
     for (ResultRow& row : steady.rows) {
         if (row.stability) row.stability->flicker.lower = 0.0;
