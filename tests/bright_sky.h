@@ -32,7 +32,7 @@ inline void write_float_picture(const std::filesystem::path& file, int width, in
 inline std::vector<float> bright_sky() {
     std::vector<float> values(std::size_t{3} * sky_columns * sky_rows, clear_sky_radiance);
     for (std::size_t channel = 0; channel < 3; ++channel) {
-        values[3 * (sun_row * sky_columns + sun_column) + channel] = sun_radiance;
+        values[std::size_t{3} * (sun_row * sky_columns + sun_column) + channel] = sun_radiance;
     }
     return values;
 }

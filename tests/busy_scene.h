@@ -56,8 +56,9 @@ inline Scene make_busy_scene() {
     Texture sky;
     sky.name = "sky", sky.width = 16, sky.height = 8;
     for (int i = 0; i < sky.width * sky.height; ++i) {
-        const float height = 1.0f - static_cast<float>(i / sky.width) / 8.0f;
-        const float across = 0.5f + 0.5f * std::cos(0.4f * static_cast<float>(i % sky.width));
+        const int column = i % sky.width, row = i / sky.width;
+        const float height = 1.0f - static_cast<float>(row) / 8.0f;
+        const float across = 0.5f + 0.5f * std::cos(0.4f * static_cast<float>(column));
         for (const float value : {height * across, 0.5f * height, 0.3f + 0.3f * across, 1.0f})
             sky.texels.emplace_back(value);
     }

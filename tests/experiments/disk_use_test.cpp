@@ -27,7 +27,8 @@ Experiment small_experiment() {
     return experiment;
 }
 
-constexpr std::uintmax_t full = 100 * (1 + 3) * 4, limited = 100 * 3 * 4;  // bytes of one image of every plane
+constexpr std::uintmax_t full = std::uintmax_t{100} * (1 + 3) * 4,
+                         limited = std::uintmax_t{100} * 3 * 4;  // bytes of one image of every plane
 
 DiskUse disk_use_of(const Experiment& experiment, bool write_frames) {
     const SceneFinder finder({});
@@ -37,23 +38,23 @@ DiskUse disk_use_of(const Experiment& experiment, bool write_frames) {
 
 TEST(DiskUse, CountsTruthsWithTheirHalvesAndVarianceForTheCache) {
     Experiment experiment = small_experiment();
-    EXPECT_EQ(disk_use_of(experiment, true).cache, 2 * 4 * (full + limited));
+    EXPECT_EQ(disk_use_of(experiment, true).cache, (full + limited) * 2 * 4);
     experiment.oracle_layers = {1, 2, 0};
-    EXPECT_EQ(disk_use_of(experiment, true).cache, 2 * 4 * (full + limited) + 3 * 2 * 4 * full);
+    EXPECT_EQ(disk_use_of(experiment, true).cache, (full + limited) * 2 * 4 + full * 3 * 2 * 4);
     experiment.oracle_layers.clear();
     experiment.scenes[0].paths.resize(1);
     experiment.scenes[0].paths[0].frames = 6;
-    EXPECT_EQ(disk_use_of(experiment, true).cache, 2 * 4 * (full + limited) + 6 * 4 * full);
+    EXPECT_EQ(disk_use_of(experiment, true).cache, (full + limited) * 2 * 4 + full * 6 * 4);
 }
 
 TEST(DiskUse, CountsCellsFramesPicturesAndTheirValuesForTheOutput) {
     Experiment experiment = small_experiment();
-    const std::uintmax_t pictures = 2 * 5 * full / 4, values = 2 * 3 * full / 2;  // two views; truth and methods
-    const std::uintmax_t without_frames = 2 * 2 * full + pictures + values;
+    const std::uintmax_t pictures = full * 2 * 5 / 4, values = full * 2 * 3 / 2;  // two views; truth and methods
+    const std::uintmax_t without_frames = full * 2 * 2 + pictures + values;
     EXPECT_EQ(disk_use_of(experiment, false).output, without_frames);
     EXPECT_EQ(disk_use_of(experiment, true).output, without_frames + 2 * (4 * (full + limited) + 2 * full));
     experiment.seeds = 3, experiment.path_tracer_samples = {2};
-    EXPECT_EQ(disk_use_of(experiment, false).output, 2 * (2 * 3 + 1) * full + pictures + values);
+    EXPECT_EQ(disk_use_of(experiment, false).output, full * 2 * (2 * 3 + 1) + pictures + values);
 }
 
 TEST(DiskUse, LooksAtTheSceneForViewsThatAreNotNamedAndLeavesOutWhatIsNotThere) {

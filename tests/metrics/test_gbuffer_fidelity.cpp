@@ -158,6 +158,7 @@ TEST(GbufferFidelity, IntervalsOfTwoBlocksAreDrawnByHand) {
 // The hundred errors and SciPy's percentiles of them that test_measure_blocks.cpp has, with the commands.
 TEST(GbufferFidelity, IntervalsOfPercentilesMatchSciPy) {
     std::vector<float> errors;
+    errors.reserve(100);
     for (int i = 0; i < 100; ++i) errors.push_back(static_cast<float>(std::pow((i * 37 % 101) / 100.0, 3)));
     GbufferFidelitySettings settings;
     settings.bootstrap.resamples = 20000;
@@ -245,6 +246,7 @@ TEST(FidelitySeries, IntervalsMatchDrawsOfTheErrorsThemselves) {
 
 TEST(FidelitySeries, OfOneFrameIsThatFrame) {
     std::vector<float> errors;
+    errors.reserve(100);
     for (int i = 0; i < 100; ++i) errors.push_back(static_cast<float>(i * 37 % 101) / 100.0f);
     GbufferFidelitySettings settings;
     settings.keep_blocks = true;

@@ -159,8 +159,10 @@ TEST(MeasureIntervals, HoldTheKnownAnswerInNineteenOfTwentyDraws) {
         for (float& scale : scales) scale = random() % 2 == 0 ? 1.0f : 3.0f;
         std::exponential_distribution<float> exponential;
         for (int y = 0; y < 80; ++y) {
-            for (int x = 0; x < 80; ++x)
-                test.at(x, y) = 0.99f + scales[static_cast<std::size_t>(y / 8 * 10 + x / 8)] * exponential(random);
+            for (int x = 0; x < 80; ++x) {
+                const int block = y / 8 * 10 + x / 8;
+                test.at(x, y) = 0.99f + scales[static_cast<std::size_t>(block)] * exponential(random);
+            }
         }
         const MeasureIntervals intervals =
             intervals_of(test, reference, 10.0, BlockGrid(80, 80, 8), {.block_size = 8, .resamples = 200});
@@ -213,7 +215,8 @@ TEST(MeasureIntervals, OfSsimAndFlipHoldTheirMeansToo) {
         // Points four pixels wide, which are still there at the coarser scales.
         for (int y = 0; y < size; y += 4) {
             for (int x = 0; x < size; x += 4) {
-                const float change = strengths[static_cast<std::size_t>(y / 24 * 8 + x / 24)] * noise(random);
+                const int block = y / 24 * 8 + x / 24;
+                const float change = strengths[static_cast<std::size_t>(block)] * noise(random);
                 for (int i = 0; i < 16; ++i) test.at(x + i % 4, y + i / 4) += change;
             }
         }

@@ -9,12 +9,12 @@
 namespace plumb {
 namespace {
 
-constexpr float albedo = 0.6f;
+constexpr float floor_albedo = 0.6f;
 
 // A floor of 20 m, seen obliquely.
 Scene floor_scene() {
     Scene scene;
-    add_quads(scene, add_material(scene, glm::vec3(albedo)), {floor_quad(10.0f)});
+    add_quads(scene, add_material(scene, glm::vec3(floor_albedo)), {floor_quad(10.0f)});
     return scene;
 }
 View floor_view(int size = 16) { return view_of({0.0f, 2.0f, 3.0f}, {0.2f, 0.0f, 0.1f}, 0.6f, size); }
@@ -37,7 +37,7 @@ TEST(PointLight, FallsOffWithTheSquareOfTheDistance) {
     expect_everywhere(scene, [&](const glm::dvec3& p) {
         const glm::dvec3 offset = position - p;
         const double distance = glm::length(offset);
-        return albedo / glm::pi<double>() * 5.0 * (offset.y / distance) / (distance * distance);
+        return floor_albedo / glm::pi<double>() * 5.0 * (offset.y / distance) / (distance * distance);
     });
 }
 
@@ -50,7 +50,7 @@ TEST(SpotLight, FadesBetweenItsTwoAngles) {
         const glm::dvec3 offset = position - p;
         const double distance = glm::length(offset);
         const double t = glm::clamp((glm::dot(axis, -offset / distance) - outer) / (inner - outer), 0.0, 1.0);
-        return albedo / glm::pi<double>() * 7.0 * t * t * (offset.y / distance) / (distance * distance);
+        return floor_albedo / glm::pi<double>() * 7.0 * t * t * (offset.y / distance) / (distance * distance);
     });
 }
 
@@ -63,7 +63,7 @@ TEST(Attenuation, OfPointAndSpotLightsFollowsItsTerms) {
         const auto arrives = [&](const glm::dvec3& p) {
             const glm::dvec3 offset = position - p;
             const double distance = glm::length(offset);
-            return albedo / glm::pi<double>() * 5.0 * (offset.y / distance) /
+            return floor_albedo / glm::pi<double>() * 5.0 * (offset.y / distance) /
                    (attenuation.constant + attenuation.linear * distance + attenuation.quadratic * distance * distance);
         };
         Scene with_point = floor_scene(), with_spot = floor_scene();
@@ -84,7 +84,7 @@ TEST(DirectionalLight, IsTheSameEverywhere) {
     Scene scene = floor_scene();
     const glm::vec3 direction = glm::normalize(glm::vec3(1.0f, -2.0f, 0.5f));
     scene.directional_lights.push_back({"sun", direction, glm::vec3(3.0f)});
-    expect_everywhere(scene, [&](const glm::dvec3&) { return albedo / glm::pi<double>() * 3.0 * -direction.y; });
+    expect_everywhere(scene, [&](const glm::dvec3&) { return floor_albedo / glm::pi<double>() * 3.0 * -direction.y; });
 }
 
 TEST(DirectionalLight, ComesNotThroughASurface) {
@@ -124,7 +124,7 @@ TEST_P(EmitterStrategies, ManySmallTexturedEmittersAddUp) {
     const double radiance = 6.0 * (1.0 / 16.0 + 15.0 / 16.0 * 0.1);
     expect_mean(frame, "direct", [&](int x, int y) {
         const glm::dvec3 position(colour_at(frame.plane("position"), x, y));
-        return albedo / glm::pi<double>() * radiance *
+        return floor_albedo / glm::pi<double>() * radiance *
                closed_form::polygon_irradiance(position, {0, 1, 0},
                                                {{-1, 1.5, -1}, {1, 1.5, -1}, {1, 1.5, 1}, {-1, 1.5, 1}});
     });
@@ -141,7 +141,7 @@ TEST_P(EmitterStrategies, ConstantEnvironmentOverAnOpenPlaneIsAlbedoTimesRadianc
     for (int y = 0; y < frame.height(); ++y) {
         for (int x = 0; x < frame.width(); ++x) {
             const bool sky = std::isinf(gbuffer.plane("depth").at(x, y));
-            EXPECT_NEAR(direct.at(x, y), sky ? 0.0f : albedo * 1.5f, 1e-5f);
+            EXPECT_NEAR(direct.at(x, y), sky ? 0.0f : floor_albedo * 1.5f, 1e-5f);
             EXPECT_EQ(frame.plane("emission").at(x, y), sky ? 1.5f : 0.0f);
             EXPECT_EQ(frame.plane("indirect").at(x, y), 0.0f);  // a plane alone does not light itself
         }
@@ -181,7 +181,8 @@ TEST_P(EmitterStrategies, ImageEnvironmentMatchesItsNumericIntegral) {
     settings.emitter_sampling = GetParam();
     const Frame frame = PathTracer(scene).render(floor_view(), settings).frame;
 
-    expect_mean(frame, "direct", albedo / glm::pi<double>() * irradiance_of_sky(scene), "", 0.0, 0.01, {1.0, 0.5, 2.0});
+    expect_mean(frame, "direct", floor_albedo / glm::pi<double>() * irradiance_of_sky(scene), "", 0.0, 0.01,
+                {1.0, 0.5, 2.0});
 }
 
 INSTANTIATE_TEST_SUITE_P(All, EmitterStrategies,
@@ -215,14 +216,15 @@ TEST(ImageEnvironment, ASunBrighterThanHalfFloatsKeepsAllItsLight) {
 TEST(OneSidedSurface, IsBlackOnItsBack) {
     for (const bool from_behind : {false, true}) {
         Scene scene;
-        add_quads(scene, add_material(scene, glm::vec3(albedo), glm::vec3(1.0f), false), {floor_quad(10.0f)});
+        add_quads(scene, add_material(scene, glm::vec3(floor_albedo), glm::vec3(1.0f), false), {floor_quad(10.0f)});
         scene.environment.radiance = glm::vec3(1.0f);
         const float side = from_behind ? -1.0f : 1.0f;
         const auto settings = settings_for({"emission", "direct", "albedo"}, 8);
         const Frame frame = PathTracer(scene).render(view_of({0, 2.0f * side, 1}, {0, 0, 0}), settings).frame;
         for (const float value : frame.plane("emission").values()) EXPECT_EQ(value, from_behind ? 0.0f : 1.0f);
-        for (const float value : frame.plane("albedo").values()) EXPECT_EQ(value, from_behind ? 0.0f : albedo);
-        for (const float value : frame.plane("direct").values()) EXPECT_NEAR(value, from_behind ? 0.0f : albedo, 1e-5f);
+        for (const float value : frame.plane("albedo").values()) EXPECT_EQ(value, from_behind ? 0.0f : floor_albedo);
+        for (const float value : frame.plane("direct").values())
+            EXPECT_NEAR(value, from_behind ? 0.0f : floor_albedo, 1e-5f);
     }
 }
 
@@ -252,7 +254,7 @@ TEST(AlphaMask, LetsLightThroughItsHoles) {
     for (int y = 0; y < frame.height(); ++y) {
         for (int x = 0; x < frame.width(); ++x) {
             const bool hole = frame.plane("position").at(x, y, 0) < 0.0f;
-            EXPECT_NEAR(frame.plane("direct").at(x, y), hole ? albedo / glm::pi<float>() : 0.0f, 1e-6f);
+            EXPECT_NEAR(frame.plane("direct").at(x, y), hole ? floor_albedo / glm::pi<float>() : 0.0f, 1e-6f);
             ++(hole ? lit : dark);
         }
     }

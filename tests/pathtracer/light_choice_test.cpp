@@ -178,7 +178,8 @@ TEST(LightChoice, SamplesOfASkyCarryTheirDensity) {
         const double theta = std::atan2(std::hypot(sample.direction.x, sample.direction.z), sample.direction.y);
         const int column = std::min(static_cast<int>(turn * sky.width), sky.width - 1);
         const int row = std::min(static_cast<int>(theta / pi * sky.height), sky.height - 1);
-        const double probability = 0.5 * texels[static_cast<std::size_t>(row * sky.width + column)] / total;
+        const int texel = row * sky.width + column;
+        const double probability = 0.5 * texels[static_cast<std::size_t>(texel)] / total;
         const double expected = probability * sky.width * sky.height / (2.0 * pi * pi * std::sin(theta));
         // Directions within rounding of a texel's edge may be found on its other side.
         const double error = std::abs(sample.density - expected) / sample.density;
@@ -189,7 +190,7 @@ TEST(LightChoice, SamplesOfASkyCarryTheirDensity) {
             EXPECT_LT(error, 1e-5 + 1e-7 / std::sin(theta)) << "sample " << i << ": " << sample.density;
         }
     }
-    EXPECT_NEAR(of_the_sky, samples / 2, 4.5 * std::sqrt(samples) / 2.0);
+    EXPECT_NEAR(of_the_sky, 0.5 * samples, 4.5 * std::sqrt(samples) / 2.0);
     EXPECT_LE(at_edges, 2);  // 1e-6 of an area lies that near to an edge
 }
 

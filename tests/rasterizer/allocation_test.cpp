@@ -80,8 +80,8 @@ std::vector<NamedMethod> varied_methods() {
     for (const auto& [name, generation] :
          {std::pair{"delay", LayerGeneration::delay}, std::pair{"previous", LayerGeneration::previous},
           std::pair{"predict", LayerGeneration::predict}, std::pair{"reproject", LayerGeneration::reproject}}) {
-        add(name, {"total", "ao", "layer2.normal"}, [&](Method& m) {
-            m.gbuffer.generation = generation;
+        add(name, {"total", "ao", "layer2.normal"}, [way = generation](Method& m) {
+            m.gbuffer.generation = way;
             m.ao.temporal.alpha = 0.5f;
         });
     }

@@ -357,6 +357,7 @@ TEST_P(PipelineTest, FurtherLayersChangeNothingOfWhatTwoLayersGive) {
         std::vector<std::string> all = compared;
         Pipeline two(context(), scene, method, planes(compared), width, height);
         std::vector<Frame> expected;
+        expected.reserve(3);
         for (int frame = 0; frame < 3; ++frame) expected.push_back(two.render(busy_frame(frame, width, height)).frame);
         for (const int layers : {3, 4}) {
             Method deeper = method;

@@ -52,6 +52,7 @@ inline RandomView random_view(unsigned seed, const Bounds& bounds, int pixels) {
 // With seeds from `first_seed` on.
 inline std::vector<RandomView> random_views(unsigned first_seed, int count, const Bounds& bounds, int pixels) {
     std::vector<RandomView> views;
+    views.reserve(static_cast<std::size_t>(count));
     for (int i = 0; i < count; ++i) views.push_back(random_view(first_seed + static_cast<unsigned>(i), bounds, pixels));
     return views;
 }

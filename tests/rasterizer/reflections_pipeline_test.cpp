@@ -158,7 +158,7 @@ TEST_P(ReflectionsPipelineTest, WhatCannotBeCombinedIsAnErrorThatSaysSo) {
     method.reflections.fallback = ReflectionFallback::probe;
     try {
         const Quantities near{.planes = {"reflection"}, .reflection_radius = 2.0f};
-        Pipeline(context(), scene, method, near, 16, 12);
+        const Pipeline pipeline(context(), scene, method, near, 16, 12);
         ADD_FAILURE() << "a fallback beyond the radius within which reflections count";
     } catch (const MethodError& error) {
         EXPECT_THAT(error.what(), testing::HasSubstr("reflections.fallback is \"probe\""));
