@@ -232,18 +232,27 @@ TEST_F(Run, IsRepeatedBitForBitFromItsResults) {
                       HasSubstr("stability.flicker_upper was 0.125")));
 }
 
+// Not what was being written when a run was killed: such files are hidden.
+std::vector<std::filesystem::path> kept_cells(const std::filesystem::path& cells) {
+    std::vector<std::filesystem::path> files;
+    for (const auto& entry : std::filesystem::directory_iterator(cells)) {
+        const std::filesystem::path& file = entry.path();
+        if (file.extension() == ".exr" && !file.filename().string().starts_with('.')) files.push_back(file);
+    }
+    return files;
+}
+
 // Gives every kept cell of a view times that no clock would tell, so that what is taken from a cell can be told from
 // what is measured again. Returns these times.
 std::vector<double> mark_cells(const std::filesystem::path& cells) {
     std::vector<double> times;
-    for (const auto& entry : std::filesystem::directory_iterator(cells)) {
-        if (entry.path().extension() != ".exr") continue;
-        Frame frame = read_exr(entry.path());
+    for (const std::filesystem::path& cell : kept_cells(cells)) {
+        Frame frame = read_exr(cell);
         nlohmann::json images = nlohmann::json::parse(frame.facts.at("cell.images"));
         if (images[0]["view"] != "front") continue;  // a path's frames are used all or not at all
         for (auto& image : images) image["timing"][0] = times.emplace_back(1e6 + static_cast<double>(times.size()));
         frame.facts["cell.images"] = images.dump();
-        write_exr(entry.path(), frame);
+        write_exr(cell, frame);
     }
     return times;
 }
@@ -259,6 +268,7 @@ TEST_F(Run, GoesOnWithTheCellsOfARunThatWasKilled) {
     std::ignore = std::system(command.c_str());
     ASSERT_TRUE(std::filesystem::exists(out / "cells")) << "the run was not killed in its middle";
     EXPECT_FALSE(std::filesystem::exists(out / "results.json"));
+    std::ofstream(out / "cells" / ".half.1-1.tmp.exr");  // as a kill amid writing leaves one
     const std::vector<double> marked = mark_cells(out / "cells");
     ASSERT_FALSE(marked.empty());
     run_it("killed");
@@ -362,15 +372,14 @@ TEST_F(Run, TakesAPathsTimesFromTheCellsOfARunThatWasKilled) {
     std::ignore = std::system(command.c_str());
     ASSERT_TRUE(std::filesystem::exists(out / "cells")) << "the run was not killed in its middle";
     int marked = 0;
-    for (const auto& entry : std::filesystem::directory_iterator(out / "cells")) {
-        if (entry.path().extension() != ".exr") continue;
-        Frame frame = read_exr(entry.path());
+    for (const std::filesystem::path& cell : kept_cells(out / "cells")) {
+        Frame frame = read_exr(cell);
         nlohmann::json images = nlohmann::json::parse(frame.facts.at("cell.images"));
         if (images[0]["timing"][0] == 0.0 || images[0]["view"] != "strafe") continue;
         ++marked;
         for (auto& image : images) image["timing"][0] = 1e6;
         frame.facts["cell.images"] = images.dump();
-        write_exr(entry.path(), frame);
+        write_exr(cell, frame);
     }
     EXPECT_EQ(marked, 1) << "the first frame's cell has the times of all";
     run_plumbline({"run", (folder_->path / "paths.toml").string(), "--output", out.string(), "--cache-dir",
