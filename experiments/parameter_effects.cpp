@@ -182,9 +182,13 @@ std::string light_reason(const Method& method, std::string_view name, AskedPlane
     }
     // The truth's light is kept as it comes, in one texture for both layers.
     const RadiositySettings& radiosity = method.radiosity;
+    const bool chain_follows = method.reflections.enabled && method.reflections.roughness == ReflectionRoughness::mip &&
+                               method.gbuffer.radiance_format == RadianceFormat::rgba32f;
     if (name == "gbuffer.radiance_format" && method.direct.source == SourceOfStage::truth && !reads_probe(method) &&
-        !(radiosity.enabled && (radiosity.carry || radiosity.bounces > 1))) {
-        return "direct.source = \"truth\", and no later bounce is gathered";
+        !chain_follows && !(radiosity.enabled && (radiosity.carry || radiosity.bounces > 1))) {
+        return "direct.source = \"truth\", no later bounce is gathered, and the chain of reflections is only wider "
+               "with "
+               "\"rgba32f\"";
     }
     return "";
 }

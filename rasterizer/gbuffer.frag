@@ -2,14 +2,17 @@
 //
 // Defines: COMPARISON_LAYER (of the depth behind which fragments are kept), LAYERS_AT_ONCE (then only those of layer 1
 // are compared, and layer 2 is the depth of the frame to come), REPROJECT (compares in the previous frame), WRITE_NORMAL,
-// WRITE_ALBEDO, WRITE_DIFFUSE_ALBEDO, WRITE_SPECULAR, WRITE_ROUGHNESS, WRITE_EMISSION, WRITE_DISPLACEMENT and
-// WRITE_POSITION with the location of each output, those of material.glsl, of gbuffer_vertex.glsl and, with
-// WRITE_DIFFUSE_ALBEDO, of specular_albedo.glsl.
+// WRITE_ALBEDO, WRITE_DIFFUSE_ALBEDO, WRITE_SPECULAR, WRITE_ROUGHNESS, WRITE_EMISSION, WRITE_MOVING_INSTANCE and
+// WRITE_POSITION with the location of each output, MOVING (some instances of the scene move), those of material.glsl,
+// of gbuffer_vertex.glsl and, with WRITE_DIFFUSE_ALBEDO, of specular_albedo.glsl.
 #include "gbuffer_vertex.glsl"
 #include "material.glsl"
 #include "normal_encoding.glsl"
 #include "view.glsl"
 
+#if defined(MOVING) && defined(REPROJECT)
+#include "instance_motion.glsl"
+#endif
 #ifdef WRITE_DIFFUSE_ALBEDO
 #include "ggx.glsl"
 #include "specular_albedo.glsl"
@@ -36,8 +39,8 @@ layout(location = WRITE_ROUGHNESS) out float roughness;
 #ifdef WRITE_EMISSION
 layout(location = WRITE_EMISSION) out vec3 emission;
 #endif
-#ifdef WRITE_DISPLACEMENT
-layout(location = WRITE_DISPLACEMENT) out vec4 displacement;
+#ifdef WRITE_MOVING_INSTANCE
+layout(location = WRITE_MOVING_INSTANCE) out uint moving_instance;
 #endif
 #ifdef WRITE_POSITION
 layout(location = WRITE_POSITION) out vec3 camera_position;
@@ -57,8 +60,8 @@ uniform bool follow_motion;  // else the comparison is of this frame
 
 bool lay_behind() {
     vec3 point = camera_space_point(gl_FragCoord.xy, depth);
-#ifdef FOLLOW_INSTANCES
-    point += vertex.displacement;
+#ifdef MOVING
+    point += displacement_of(moving_number, point);
 #endif
     vec3 previous = (previous_camera_from_camera * vec4(point, 1.0)).xyz;
     float previous_depth = -previous.z;
@@ -77,16 +80,6 @@ vec3 left_by_specular(SpecularSurface surface, vec3 n) {
     float cosine = max(dot(lobe_normal(camera_space_direction(n), to_viewer), to_viewer), 0.0);
     vec2 share = specular_split(cosine, ggx_alpha(surface.roughness));
     return 1.0 - (share.x * surface.f0 + share.y * surface.f90);
-}
-#endif
-
-#if defined(WRITE_DISPLACEMENT) && defined(FOLLOW_INSTANCES)
-// Where the normal pointed in the frame before, as reprojection.glsl reads it; 0 where it points there still.
-float previous_normal_code(vec3 n) {
-    if (previous_normal_from_normal[0].w == 0.0) return 0.0;
-    mat3 turn = mat3(previous_normal_from_normal[0].xyz, previous_normal_from_normal[1].xyz,
-                     previous_normal_from_normal[2].xyz);
-    return code_of_normal(normalize(turn * n));
 }
 #endif
 
@@ -146,12 +139,8 @@ void main() {
     emission = vec3(0.0);
 #endif
 #endif
-#ifdef WRITE_DISPLACEMENT
-#ifdef FOLLOW_INSTANCES
-    displacement = vec4(vertex.displacement, previous_normal_code(normalize(vertex.world_normal)));
-#else
-    displacement = vec4(0.0);
-#endif
+#ifdef WRITE_MOVING_INSTANCE
+    moving_instance = moving_number;
 #endif
 #ifdef WRITE_POSITION
     camera_position = camera_space_point(gl_FragCoord.xy, depth);

@@ -28,9 +28,6 @@ void main() {
 #ifdef TEXTURE_COORDINATES
             vertex.uv = vertices[i].uv;
 #endif
-#ifdef FOLLOW_INSTANCES
-            vertex.displacement = vertices[i].displacement;
-#endif
             EmitVertex();
         }
         EndPrimitive();

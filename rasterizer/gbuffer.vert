@@ -45,8 +45,4 @@ void main() {
 #ifdef TEXTURE_COORDINATES
     vertex.uv = texture_coordinates;
 #endif
-#ifdef FOLLOW_INSTANCES
-    mat4 moved = previous_world_from_object - world_from_object;  // exactly zero where nothing moves
-    vertex.displacement = camera_space_direction((moved * vec4(position, 1.0)).xyz);
-#endif
 }

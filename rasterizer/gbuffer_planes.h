@@ -11,9 +11,8 @@
 //   roughness        R16F       perceptual
 //   emission         RGBA16F    in the first layer also the environment's radiance where nothing is in front of it;
 //                               RGBA32F where the scene holds brighter light than half floats do
-//   displacement     RGBA32F    where the surface point of an instance that moves was in the frame before minus where
-//                               it is, camera space of now, metres; in a, where the instance has turned, the normal of
-//                               then (code_of_normal, normal_encoding.glsl), else 0
+//   moving_instance  R16UI      the number of the instance among those that move (instance_motion.h), 0 where nothing
+//                               does; R32UI where more than 65,535 move
 //   camera_position  RGBA32F    camera space; only where the method stores positions (gbuffer.position)
 //   previous_depth   R32F       what `depth` held in the frame before: the two trade places (plane_history.h)
 //

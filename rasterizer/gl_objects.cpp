@@ -58,6 +58,7 @@ std::size_t bytes_per_texel(GLenum format) {
             return 1;
         case GL_R16F:
         case GL_R16:
+        case GL_R16UI:
         case GL_RG8:
             return 2;
         case GL_R32F:
@@ -84,6 +85,8 @@ std::size_t bytes_per_texel(GLenum format) {
                 fmt::format("texture format {:#x}: its size is not known; add it to bytes_per_texel", format));
     }
 }
+
+bool holds_integers(GLenum format) { return format == GL_R16UI || format == GL_R32UI; }
 
 namespace {
 

@@ -43,6 +43,9 @@ private:
 // Bytes of one texel of a sized internal format. Throws GlError for a format that no pass uses.
 std::size_t bytes_per_texel(GLenum format);
 
+// Whether its texels are unsigned integers, which shaders and OpenGL's functions read and write as such.
+bool holds_integers(GLenum format);
+
 // A texture of any target. Starts with nearest filtering (a cube with linear), clamped to its edge; contents are
 // undefined until written.
 class GlTexture : public GlObject {

@@ -21,8 +21,8 @@ enum class PositionSource { from_depth, stored, stored_16 };
 enum class NormalFormat { oct32, oct16, rgb32f, rgb16f, rgb10a2, r11g11b10f, xy8 };
 enum class RadianceFormat { rgba32f, rgba16f, r11g11b10f };  // in bytes: 16, 8, 4
 
-// With everything else on, two layers of 1280x720 take less than 400 MiB of OpenGL's memory, but for position = stored,
-// a normal_format of more than 4 bytes, a radiance_format other than rgba16f or a guard band.
+// With everything else on, two layers of 1280x720 take less than 400 MiB of OpenGL's memory in any one of these
+// formats; with several of the wide ones at once, or more than two bounces, they take more.
 struct GBufferSettings {
     SourceOfStage source = SourceOfStage::method;
     int layers = 2;  // 1 to 4; more than 2 by peeling only, for who reads layer3.* and layer4.*
@@ -34,7 +34,8 @@ struct GBufferSettings {
     DepthMapping depth_mapping = DepthMapping::reversed;
     PositionSource position = PositionSource::from_depth;
     NormalFormat normal_format = NormalFormat::oct32;
-    RadianceFormat radiance_format = RadianceFormat::rgba16f;  // of the lit layers that the radiosity gathers from
+    RadianceFormat radiance_format =
+        RadianceFormat::rgba16f;  // of the lit layers that the radiosity and reflections gather from
 };
 
 // What holds the shadows of point lights, and of spot lights too wide for a flat map (shadow_pass.h compares them).

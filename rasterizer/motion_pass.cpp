@@ -7,13 +7,13 @@
 namespace plumb {
 namespace {
 
-constexpr GLuint motion_displacement_unit = 1;
+constexpr GLuint motion_instance_unit = 1;
 
 }  // namespace
 
 MotionPass::MotionPass(const PassResources& resources, int layer)
     : depth_(resources.planes.get("depth")),
-      reprojection_(resources, motion_displacement_unit),
+      reprojection_(resources, motion_instance_unit),
       layer_(layer),
       draw_(resources.context, resources.programs, "motion.frag", reprojection_.defines()) {
     // Whichever layer's pass is made first allocates for both.

@@ -28,18 +28,6 @@ vec3 decode_normal(vec2 encoded) {
     return normalize(n);
 }
 
-// The same as one number for a 32-bit float channel, 15 bits for each coordinate. Codes are bit patterns of ordinary
-// positive numbers (no zero, no denormal, no infinity), which every OpenGL stores as they are.
-float code_of_normal(vec3 n) {
-    uvec2 steps = uvec2(encode_normal(n) * 32767.0 + 0.5);
-    return uintBitsToFloat((steps.y << 15 | steps.x) + 0x00800000u);
-}
-
-vec3 normal_of_code(float code) {
-    uint bits = floatBitsToUint(code) - 0x00800000u;
-    return decode_normal(vec2(bits & 32767u, bits >> 15) / 32767.0);
-}
-
 // The texel of the plane `normal` that keeps the world-space unit vector n.
 vec4 texel_of_normal(vec3 n) {
 #if NORMAL_ENCODING == OCTAHEDRAL

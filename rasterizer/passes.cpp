@@ -96,7 +96,7 @@ std::vector<PassDeclaration> declare_passes(const Scene& scene, const Method& me
     const auto add_all = [&](std::vector<PassDeclaration> more) {
         for (PassDeclaration& pass : more) passes.push_back(std::move(pass));
     };
-    passes.push_back(declare_true_gbuffer(method));
+    passes.push_back(declare_true_gbuffer(scene, method));
     passes.push_back(declare_gbuffer(scene, method));
     for (int layer = 1; layer < most_layers; ++layer) passes.push_back(declare_peeled_layer(method, layer));
     for (int layer = 0; layer < most_layers; ++layer) passes.push_back(declare_motion(scene, layer));

@@ -6,6 +6,7 @@
 
 #include "rasterizer/gbuffer_planes.h"
 #include "rasterizer/gl_error.h"
+#include "rasterizer/instance_motion.h"
 #include "rasterizer/normal_encoding.h"
 #include "rasterizer/pass_plan.h"
 #include "rasterizer/pass_timer.h"
@@ -45,6 +46,7 @@ struct Pipeline::Implementation {
                  plan.lifetimes),
           programs(context, gbuffer_defines(method)),
           view_uniforms(context),
+          instance_motions(context, scene),
           timer(context, plan.order.size()) {
         context.make_current();
         const PassResources resources{
@@ -85,6 +87,8 @@ struct Pipeline::Implementation {
                                    .with_guard_band(method.gbuffer.guard_band);
         view_uniforms.update(wide, wide_previous, method.gbuffer.guard_band, &wide_next, frame_number_,
                              pattern_shift(request.seed));
+        instance_motions.update(request.now, previous);
+        instance_motions.bind();
         if (geometry) geometry->move_to(request.now, previous, next);
         // What was foretold was drawn with the offset of the frame that would follow.
         const bool foretold = foretold_ == request.now && (continues || offsets.size() == 1);
@@ -132,6 +136,7 @@ struct Pipeline::Implementation {
     PlaneTextures planes;
     ProgramCache programs;
     ViewUniforms view_uniforms;
+    InstanceMotions instance_motions;
     std::optional<SceneGeometry> geometry;
     std::vector<std::unique_ptr<Pass>> passes;
     PassTimer timer;

@@ -9,7 +9,7 @@ namespace plumb {
 namespace {
 
 int channels_of_plane(const std::string& base) {
-    if (base == "depth" || base == "ao" || base == "roughness" || base == "confidence" ||
+    if (base == "depth" || base == "ao" || base == "roughness" || base == "confidence" || base == "moving_instance" ||
         base.ends_with(".history_weight"))
         return 1;
     if (base == "motion") return 2;

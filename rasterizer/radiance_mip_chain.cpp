@@ -21,6 +21,11 @@ ShaderDefines defines_of_level(const PassResources& resources, bool first) {
     return defines;
 }
 
+GLenum chain_format(const PassResources& resources) {
+    const bool is_wide = resources.method.gbuffer.radiance_format == RadianceFormat::rgba32f;
+    return is_wide ? GL_RGBA32F : emission_format(resources.scene);
+}
+
 }  // namespace
 
 int coarsest_radiance_level(int width, int height) {
@@ -61,8 +66,7 @@ void SurfaceRadiancePlanes::bind() const {
 RadianceMipChainPass::RadianceMipChainPass(const PassResources& resources)
     : sources_(resources.planes, SurfaceRadiance(resources.scene, resources.method, resources.quantities)),
       depth_(resources.planes.get("depth")),
-      chain_(resources.planes.create(radiance_chain_plane, emission_format(resources.scene),
-                                     resources.method.reflections.layers,
+      chain_(resources.planes.create(radiance_chain_plane, chain_format(resources), resources.method.reflections.layers,
                                      1 + coarsest_radiance_level(resources.planes.width(), resources.planes.height()))),
       first_level_(resources.context, resources.programs, "radiance_mip_chain.frag", defines_of_level(resources, true)),
       further_levels_(resources.context, resources.programs, "radiance_mip_chain.frag",
@@ -104,6 +108,7 @@ PassDeclaration declare_radiance_mip_chain(const Scene& scene, const Method& met
     for (int layer = 0; layer < settings.layers; ++layer) pass.inputs.push_back(layer_prefix(layer) + "depth");
     pass.outputs = {radiance_chain_plane};
     pass.create = [](const PassResources& resources) { return std::make_unique<RadianceMipChainPass>(resources); };
+    if (emission_format(scene) != GL_RGBA32F) pass.parameters.push_back({"gbuffer.radiance_format"});
     pass.remark = fmt::format("{} layer{}", settings.layers, settings.layers == 1 ? "" : "s");
     if (!settings.enabled) pass.disabled = "method.reflections.enabled is false";
     return pass;

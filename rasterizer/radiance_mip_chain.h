@@ -1,10 +1,10 @@
 // What the surfaces of each layer send out, at several resolutions: what a wide lobe sees of them.
 //
-// The plane `radiance_chain`, in the format of `emission` (gbuffer_planes.h), one layer per layer of the G-buffer.
-// Level 0 holds the radiance of each pixel (surface_radiance.glsl) and 1 in alpha, 0 where nothing is; a texel of a
-// further level is the plain mean of the four below it, an odd last row or column left out. Radiance divided by alpha
-// is thus the mean over the surfaces among the pixels, as if what is between them were not there; texels that cover an
-// edge hold both of its sides.
+// The plane `radiance_chain`, RGBA16F, or RGBA32F where what it is made of has 32 bits (emission_format,
+// gbuffer.radiance_format), one layer per layer of the G-buffer. Level 0 holds the radiance of each pixel
+// (surface_radiance.glsl) and 1 in alpha, 0 where nothing is; a texel of a further level is the plain mean of the four
+// below it, an odd last row or column left out. Radiance divided by alpha is thus the mean over the surfaces among the
+// pixels, as if what is between them were not there; texels that cover an edge hold both of its sides.
 //   Good for: footprints on one surface. Bad for: small bright things before a dark background far behind them, whose
 //   light spreads over both.
 #pragma once

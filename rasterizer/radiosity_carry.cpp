@@ -11,7 +11,7 @@ namespace plumb {
 namespace {
 
 struct CarryUnits {
-    enum : GLuint { depth, previous_depth, direct, albedo, irradiance, displacement };
+    enum : GLuint { depth, previous_depth, direct, albedo, irradiance, moving_instance };
 };
 
 void require_sound_carry(const RadiositySettings& settings) {
@@ -49,7 +49,7 @@ RadiosityCarryPass::RadiosityCarryPass(const PassResources& resources)
       direct_(resources.planes.get("direct")),
       albedo_(resources.planes.get(diffuse_albedo_plane(resources.scene, resources.method))),
       takes_all_(resources.method.radiosity.damping == 1.0f),
-      reprojection_(resources, CarryUnits::displacement),
+      reprojection_(resources, CarryUnits::moving_instance),
       draw_(resources.context, resources.programs, "radiosity_carry.frag", defines(resources)),
       target_(make_carry_target(resources)) {}
 

@@ -5,28 +5,28 @@
 namespace plumb {
 namespace {
 
-constexpr const char* displacement_plane = "displacement";
+constexpr const char* moving_instance_plane = "moving_instance";
 
 bool anything_moves(const Scene& scene) { return std::ranges::any_of(scene.instances, &Instance::moves); }
 
 }  // namespace
 
 Reprojection::Reprojection(const PassResources& resources, GLuint unit) : unit_(unit) {
-    if (anything_moves(resources.scene)) displacement_ = &resources.planes.get(displacement_plane);
+    if (anything_moves(resources.scene)) moving_instance_ = &resources.planes.get(moving_instance_plane);
 }
 
 ShaderDefines Reprojection::defines() const {
-    if (!displacement_) return {};
-    return {{"DISPLACEMENT_UNIT", std::to_string(unit_)}};
+    if (!moving_instance_) return {};
+    return {{"MOVING_INSTANCE_UNIT", std::to_string(unit_)}};
 }
 
 void Reprojection::bind() const {
-    if (displacement_) displacement_->bind(unit_);
+    if (moving_instance_) moving_instance_->bind(unit_);
 }
 
 std::vector<std::string> Reprojection::inputs(const Scene& scene, int layer) {
     if (!anything_moves(scene)) return {};
-    return {layer_prefix(layer) + displacement_plane};
+    return {layer_prefix(layer) + moving_instance_plane};
 }
 
 }  // namespace plumb

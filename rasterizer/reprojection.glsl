@@ -1,12 +1,16 @@
 // Where the surface point that a pixel shows was in the frame before (FrameRequest::previous): what moving cameras and
 // moving instances have in common. reprojection.h is the other half.
 //
-// Define: DISPLACEMENT_UNIT, the texture unit of the plane `displacement`; without it no instance moves.
+// Define: MOVING_INSTANCE_UNIT, the texture unit of the plane `moving_instance`; without it no instance moves.
 #include "normal_encoding.glsl"
 #include "view.glsl"
 
-#ifdef DISPLACEMENT_UNIT
-layout(binding = DISPLACEMENT_UNIT) uniform sampler2DArray displacement_plane;
+#ifdef MOVING_INSTANCE_UNIT
+#include "instance_motion.glsl"
+
+layout(binding = MOVING_INSTANCE_UNIT) uniform usampler2DArray moving_instance_plane;
+
+uint moving_instance(ivec2 pixel, int layer) { return texelFetch(moving_instance_plane, ivec3(pixel, layer), 0).r; }
 #endif
 
 struct PreviousPlace {
@@ -21,8 +25,8 @@ PreviousPlace previous_place(ivec2 pixel, int layer, float depth) {
     vec2 centre = vec2(pixel) + 0.5;
     vec4 point = is_background(depth) ? vec4(camera_space_point(centre, 1.0), 0.0)
                                       : vec4(camera_space_point(centre, depth), 1.0);
-#ifdef DISPLACEMENT_UNIT
-    if (!is_background(depth)) point.xyz += texelFetch(displacement_plane, ivec3(pixel, layer), 0).xyz;
+#ifdef MOVING_INSTANCE_UNIT
+    if (!is_background(depth)) point.xyz += displacement_of(moving_instance(pixel, layer), point.xyz);
 #endif
     PreviousPlace place;
     place.point = (previous_camera_from_camera * point).xyz;
@@ -33,9 +37,9 @@ PreviousPlace previous_place(ivec2 pixel, int layer, float depth) {
 
 // Where the normal of the surface there pointed, `normal` being that of now; world space, either sign.
 vec3 previous_normal(ivec2 pixel, int layer, vec3 normal) {
-#ifdef DISPLACEMENT_UNIT
-    float code = texelFetch(displacement_plane, ivec3(pixel, layer), 0).w;
-    if (code != 0.0) return normal_of_code(code);
-#endif
+#ifdef MOVING_INSTANCE_UNIT
+    return previous_normal_of(moving_instance(pixel, layer), normal);
+#else
     return normal;
+#endif
 }

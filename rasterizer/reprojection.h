@@ -19,7 +19,7 @@ public:
     static std::vector<std::string> inputs(const Scene& scene, int layer);
 
 private:
-    const GlTexture* displacement_ = nullptr;  // of scenes in which something moves
+    const GlTexture* moving_instance_ = nullptr;  // of scenes in which something moves
     GLuint unit_;
 };
 

@@ -8,9 +8,6 @@ layout(std140, binding = 1) uniform InstanceBlock {
     int alpha_channel;
     int two_sided;
     float dielectric_reflectance;
-    mat4 previous_world_from_object;  // in the frame before
-    mat4 next_world_from_object;      // in the frame to come
-    // Takes normals of now to where they pointed in the frame before, in the columns' xyz. w of the first: 1 where the
-    // instance has turned or changed its shape since, else 0.
-    vec4 previous_normal_from_normal[3];
+    mat4 next_world_from_object;  // in the frame to come
+    uint moving_number;           // among the instances that move, from 1 (instance_motion.h); 0: it stands still
 };

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "rasterizer/instance_motion.h"
 #include "rasterizer/scene_texture.h"
 
 namespace plumb {
@@ -26,11 +27,11 @@ struct InstanceBlock {
     int alpha_channel;
     int two_sided;
     float dielectric_reflectance;
-    glm::mat4 previous_world_from_object;
     glm::mat4 next_world_from_object;
-    glm::vec4 previous_normal_from_normal[3];  // see there
+    std::uint32_t moving_number;
+    std::uint32_t padding_at_end[3];
 };
-static_assert(sizeof(InstanceBlock) == 336);
+static_assert(sizeof(InstanceBlock) == 240);
 constexpr GLuint instance_binding = 1;
 
 struct MeshRange {
@@ -84,8 +85,7 @@ Bounds world_bounds(const Bounds& object, const glm::mat4& world_from_object) {
     return bounds;
 }
 
-InstanceBlock instance_block(const Material& material, const glm::mat4& now, const glm::mat4& previous,
-                             const glm::mat4& next) {
+InstanceBlock instance_block(const Material& material, const glm::mat4& now, const glm::mat4& next, int moving_number) {
     // Inverted in double precision: scales of 1e-3 and less make the determinant tiny.
     const glm::mat3 normal_matrix(glm::transpose(glm::inverse(glm::dmat3(glm::mat3(now)))));
     InstanceBlock block{};
@@ -97,14 +97,8 @@ InstanceBlock instance_block(const Material& material, const glm::mat4& now, con
     block.alpha_channel = material.alpha_texture != no_texture ? material.alpha_channel : 3;
     block.two_sided = material.two_sided ? 1 : 0;
     block.dielectric_reflectance = material.dielectric_reflectance;
-    block.previous_world_from_object = previous;
     block.next_world_from_object = next;
-    if (glm::mat3(previous) != glm::mat3(now)) {
-        const glm::dmat3 before(glm::transpose(glm::inverse(glm::dmat3(glm::mat3(previous)))));
-        const glm::mat3 turn(before * glm::transpose(glm::dmat3(glm::mat3(now))));
-        for (int column = 0; column < 3; ++column)
-            block.previous_normal_from_normal[column] = glm::vec4(turn[column], column == 0 ? 1.0f : 0.0f);
-    }
+    block.moving_number = static_cast<std::uint32_t>(moving_number);
     return block;
 }
 
@@ -145,7 +139,7 @@ MaterialVariant MaterialVariant::coverage() const {
 }
 
 SceneGeometry::SceneGeometry(GlContext& context, const Scene& scene)
-    : context_(context), scene_(scene), vertex_array_(context) {
+    : context_(context), scene_(scene), moving_numbers_(moving_instance_numbers(scene)), vertex_array_(context) {
     upload_meshes();
     upload_instances();
     upload_textures();
@@ -216,7 +210,7 @@ void SceneGeometry::upload_instances() {
         const Instance& instance = scene_.instances[i];
         const glm::mat4& pose = instance.world_from_object;
         const InstanceBlock block =
-            instance_block(scene_.materials[scene_.meshes[instance.mesh].material], pose, pose, pose);
+            instance_block(scene_.materials[scene_.meshes[instance.mesh].material], pose, pose, moving_numbers_[i]);
         std::copy_n(reinterpret_cast<const std::byte*>(&block), sizeof(block), &bytes[i * instance_stride_]);
     }
     instances_ = GlBuffer(context_, bytes.size(), bytes.data(), GL_DYNAMIC_STORAGE_BIT);
@@ -227,7 +221,7 @@ void SceneGeometry::find_moving() {
         const Instance& instance = scene_.instances[draws_[i].instance];
         if (!instance.moves()) continue;
         const glm::mat4& pose = instance.world_from_object;
-        moving_.push_back({i, world_bounds(scene_.meshes[instance.mesh], glm::mat4(1.0f)), {pose, pose, pose}});
+        moving_.push_back({i, world_bounds(scene_.meshes[instance.mesh], glm::mat4(1.0f)), {pose, pose}});
     }
 }
 
@@ -235,14 +229,14 @@ void SceneGeometry::move_to(const Moment& now, const Moment& previous, const Mom
     for (MovingDraw& moving : moving_) {
         SceneDraw& draw = draws_[moving.draw];
         const Instance& instance = scene_.instances[draw.instance];
-        Poses poses{now.pose(instance), previous.pose(instance), {}};
-        poses.next = next ? next->pose(instance) : extrapolate(poses.previous, poses.now);
+        Poses poses{now.pose(instance), {}};
+        poses.next = next ? next->pose(instance) : extrapolate(previous.pose(instance), poses.now);
         if (poses == moving.poses) continue;
         moving.poses = poses;
         draw.bounds = world_bounds(moving.object_bounds, poses.now);
         draw.next_bounds = world_bounds(moving.object_bounds, poses.next);
-        const InstanceBlock block =
-            instance_block(scene_.materials[draw.material], poses.now, poses.previous, poses.next);
+        const InstanceBlock block = instance_block(scene_.materials[draw.material], poses.now, poses.next,
+                                                   moving_numbers_[static_cast<std::size_t>(draw.instance)]);
         instances_.write(static_cast<std::size_t>(draw.instance) * instance_stride_, sizeof(block), &block);
     }
 }

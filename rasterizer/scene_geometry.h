@@ -71,7 +71,7 @@ public:
 
 private:
     struct Poses {
-        glm::mat4 now{1.0f}, previous{1.0f}, next{1.0f};
+        glm::mat4 now{1.0f}, next{1.0f};
         bool operator==(const Poses&) const = default;
     };
     struct MovingDraw {
@@ -92,6 +92,7 @@ private:
     std::vector<MaterialVariant> variants_;
     GlBuffer vertices_, indices_, instances_;
     std::size_t instance_stride_ = 0;
+    std::vector<int> moving_numbers_;  // of every instance
     std::vector<MovingDraw> moving_;
     GlVertexArray vertex_array_;
     std::vector<GlTexture> textures_;

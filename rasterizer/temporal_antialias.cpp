@@ -7,7 +7,7 @@
 namespace plumb {
 namespace {
 
-constexpr GLuint antialias_displacement_unit = 3;
+constexpr GLuint antialias_instance_unit = 3;
 constexpr const char* resolved_plane = "total";
 constexpr const char* resolved_before = "total.previous";  // which nobody reads once the pass has run
 
@@ -58,7 +58,7 @@ std::string composited_plane(const Method& method) {
 TemporalAntialiasPass::TemporalAntialiasPass(const PassResources& resources)
     : aliased_(resources.planes.get(aliased_plane)),
       depth_(resources.planes.get("depth")),
-      reprojection_(resources, antialias_displacement_unit),
+      reprojection_(resources, antialias_instance_unit),
       area_(resources, {0, 0}),
       resolved_(create_resolved(resources.planes)),
       history_(*resources.planes.history_of(resolved_plane)),

@@ -11,7 +11,7 @@
 namespace plumb {
 namespace {
 
-constexpr GLuint history_displacement_unit = 5;
+constexpr GLuint history_instance_unit = 5;
 
 const TemporalFilterSettings& checked(const TemporalFilterRequest& request) {
     const TemporalFilterSettings& settings = request.settings;
@@ -85,7 +85,7 @@ TemporalFilterPass::TemporalFilterPass(const PassResources& resources, const Tem
       normal_(reads_normals(request.settings) ? &resources.planes.get("normal") : nullptr),
       previous_depth_(resources.planes.get(gbuffer_history)),
       is_first_(!resources.planes.has(request.output)),
-      reprojection_(resources, history_displacement_unit),
+      reprojection_(resources, history_instance_unit),
       area_(resources, {0, 0}, request.read_beyond),
       output_(create_output(resources, request)),
       history_(*resources.planes.history_of(request.output)),

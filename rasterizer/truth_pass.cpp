@@ -7,14 +7,18 @@
 
 #include "rasterizer/gbuffer_planes.h"
 #include "rasterizer/gl_error.h"
+#include "rasterizer/instance_motion.h"
 #include "rasterizer/normal_encoding.h"
 #include "rasterizer/texture_transfer.h"
 
 namespace plumb {
 namespace {
 
-GLenum format_of(std::string_view plane) {
+constexpr std::string_view moving_instance = "moving_instance";
+
+GLenum format_of(std::string_view plane, const Scene& scene) {
     if (plane == "depth") return GL_R32F;
+    if (plane == moving_instance) return moving_instance_format(scene);
     if (plane == "normal") return GL_RG16;
     return GL_RGBA32F;  // as it comes: the point is to have no error of one's own
 }
@@ -31,20 +35,37 @@ Image encoded_normals(const Image& normals) {
     return encoded;
 }
 
+Image numbers_of_moving(const Image& instances, const std::vector<int>& moving_numbers) {
+    const auto count = static_cast<float>(moving_numbers.size());
+    Image numbers(instances.width(), instances.height(), 1);
+    std::ranges::transform(instances.values(), numbers.values().begin(), [&](float instance) {
+        if (instance == -1.0f) return 0.0f;
+        if (!(instance >= 0.0f && instance < count)) {
+            throw MethodError(fmt::format(
+                "the truth's plane 'instance' holds {}, and the scene has {} instances: it is of another scene",
+                instance, moving_numbers.size()));
+        }
+        return static_cast<float>(moving_numbers[static_cast<std::size_t>(instance)]);
+    });
+    return numbers;
+}
+
 }  // namespace
 
-TruthPass::TruthPass(const PassResources& resources, std::vector<std::string> planes) {
+TruthPass::TruthPass(const PassResources& resources, std::vector<std::string> planes)
+    : moving_numbers_(moving_instance_numbers(resources.scene)) {
     for (std::string& plane : planes) {
         const auto [layer, base] = split_layer(plane);
         const bool is_kept = base == "depth" && any_layer_is_read(resources, gbuffer_history);
         if (base == gbuffer_history || !(is_kept || resources.is_read(plane))) continue;
         if (!resources.planes.has(base)) {
             const int layers = std::max(resources.layers_of(base), is_kept ? resources.layers_of(gbuffer_history) : 1);
-            resources.planes.create(base, format_of(base), layers);
+            resources.planes.create(base, format_of(base, resources.scene), layers);
             if (is_kept) depth_history_ = &resources.planes.create_history(base, std::string(gbuffer_history));
         }
         const GlTexture& texture = resources.planes.get(base);
-        if (layer < texture.layers()) uploads_.push_back({std::move(plane), &texture, layer});
+        if (layer >= texture.layers()) continue;
+        uploads_.push_back({layer_prefix(layer) + (base == moving_instance ? "instance" : base), &texture, layer});
     }
 }
 
@@ -63,19 +84,27 @@ void TruthPass::execute(const PassFrame& frame) {
             throw MethodError(fmt::format("the truth frame is {}x{}, the pipeline renders {}x{}", image.width(),
                                           image.height(), upload_one.texture->width(), upload_one.texture->height()));
         }
-        upload(*upload_one.texture, upload_one.layer,
-               split_layer(upload_one.plane).base == "normal" ? encoded_normals(image) : image);
+        const std::string base = split_layer(upload_one.plane).base;
+        if (base == "normal") {
+            upload(*upload_one.texture, upload_one.layer, encoded_normals(image));
+        } else if (base == "instance") {
+            upload(*upload_one.texture, upload_one.layer, numbers_of_moving(image, moving_numbers_));
+        } else {
+            upload(*upload_one.texture, upload_one.layer, image);
+        }
     }
 }
 
-PassDeclaration declare_true_gbuffer(const Method& method) {
+PassDeclaration declare_true_gbuffer(const Scene& scene, const Method& method) {
     PassDeclaration pass;
     pass.name = "gbuffer.truth";
-    pass.outputs = {"depth", "normal", "albedo", std::string(gbuffer_history), "emission"};
+    std::vector<std::string> of_each_layer{"depth", "normal", "albedo", std::string(gbuffer_history)};
+    if (std::ranges::any_of(scene.instances, &Instance::moves)) of_each_layer.emplace_back(moving_instance);
+    pass.outputs = of_each_layer;
+    pass.outputs.emplace_back("emission");
     const auto first_layer_outputs = static_cast<std::ptrdiff_t>(pass.outputs.size());
     for (int layer = 1; layer < method.gbuffer.layers; ++layer) {
-        for (const std::string plane : {"depth", "normal", "albedo", gbuffer_history.data()})
-            pass.outputs.push_back(layer_prefix(layer) + plane);
+        for (const std::string& plane : of_each_layer) pass.outputs.push_back(layer_prefix(layer) + plane);
     }
     pass.parameters = {{"gbuffer.source"}, {"gbuffer.layers"}};
     // The truth's layers are that far apart.

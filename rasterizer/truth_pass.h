@@ -1,4 +1,5 @@
-// Planes handed in instead of rendered: uploads those of the frame's truth.
+// Planes handed in instead of rendered: uploads those of the frame's truth, in which `instance` (the number of an
+// instance in the scene, -1 where nothing is) stands for `moving_instance`.
 #pragma once
 
 #include <string>
@@ -21,11 +22,12 @@ private:
         int layer;
     };
     std::vector<Upload> uploads_;
+    std::vector<int> moving_numbers_;              // of every instance
     const PlaneHistory* depth_history_ = nullptr;  // where the pass gives it
 };
 
 // The G-buffer (all layers of the method) where gbuffer.source is "truth".
-PassDeclaration declare_true_gbuffer(const Method& method);
+PassDeclaration declare_true_gbuffer(const Scene& scene, const Method& method);
 // Direct light of the first layer where direct.source is "truth". No reference holds light of the second layer: the
 // method lights that one itself.
 PassDeclaration declare_true_direct(const Method& method);

@@ -30,9 +30,9 @@ inline Method with_everything_on() {
     return method;
 }
 
-// And of every choice the one that takes the most, but for the formats that method_memory_test.cpp names, as long as
-// nothing has more texels than by default and light bounces twice (dearest_method_test.cpp looks for one that takes
-// more).
+// And of every choice the one that takes the most, but for formats wider than by default (method_memory_test.cpp), as
+// long as nothing has more texels than by default and light bounces twice (dearest_method_test.cpp looks for one that
+// takes more).
 inline Method dearest_method() {
     Method method = with_everything_on();
     method.name = "dearest";

@@ -302,7 +302,7 @@ TEST_P(PipelineTest, ImpossibleMethodsSayWhatToChange) {
     method = small_method();
     method.gbuffer.position = PositionSource::stored;
     EXPECT_THAT(make(method, {"depth", "normal", "albedo", "diffuse_albedo", "specular", "roughness", "emission",
-                              "displacement", "camera_position"}),
+                              "moving_instance", "camera_position"}),
                 HasSubstr("9 planes at once"));
 }
 

@@ -192,8 +192,7 @@ Carried carried_on(const Frame& now, const Frame& before, const View& view, cons
     if (std::isinf(depth)) return {};
     glm::vec4 world =
         view.camera().world_from_camera * glm::vec4(view.camera_space_point(x + 0.5f, y + 0.5f, depth), 1.0f);
-    const glm::dvec3 moved = colour_at(now.plane(prefix + "displacement"), x, y);
-    if (glm::length(moved) > 0.0) world = moved_back * world;
+    if (now.plane(prefix + "moving_instance").at(x, y) > 0.0f) world = moved_back * world;
     const glm::vec3 then = previous.project(glm::vec3(world));
     Carried result;
     for (const float coordinate : {then.x, then.y})
@@ -236,7 +235,7 @@ TEST_P(RadiosityCarryTest, FindsPointsAgainThatTheCameraAndObjectsMoved) {
     const Camera to = Camera::look_at("to", {1.3f, 1.65f, 3.1f}, {-0.08f, 0.62f, -0.4f}, 0.8f);
     const Moment then{View(from, width, height), 0.2}, now{View(to, width, height), 0.4};
     Pipeline pipeline(context(), scene, exact(settings),
-                      wanted({"depth", "albedo", "direct", "displacement", "radiosity", "radiosity.sent"}), width,
+                      wanted({"depth", "albedo", "direct", "moving_instance", "radiosity", "radiosity.sent"}), width,
                       height);
     const Frame before = pipeline.render({.now = then}).frame;
     const Frame after = pipeline.render({.now = now, .previous = then}).frame;
@@ -254,7 +253,7 @@ TEST_P(RadiosityCarryTest, FindsPointsAgainThatTheCameraAndObjectsMoved) {
                 << "pixel (" << x << ", " << y << "): " << actual.x << ", expected " << expected.radiance.x;
             const bool is_found = glm::length(expected.radiance) > 0.0;
             (is_found ? found : lost) += 1;
-            moving += is_found && glm::length(colour_at(after.plane("displacement"), x, y)) > 0.0;
+            moving += is_found && after.plane("moving_instance").at(x, y) > 0.0f;
         }
     }
     EXPECT_LT(ambiguous, width * height / 50);
@@ -272,7 +271,7 @@ TEST_P(RadiosityCarryTest, BothLayersFindPointsAgainInEitherLayer) {
     const glm::mat4 moved_back = scene.instances.back().pose(0.2) * glm::inverse(scene.instances.back().pose(0.5));
     std::vector<std::string> planes;
     for (const std::string prefix : {"", "layer2."}) {
-        for (const char* plane : {"depth", "albedo", "direct", "displacement", "radiosity.sent"})
+        for (const char* plane : {"depth", "albedo", "direct", "moving_instance", "radiosity.sent"})
             planes.push_back(prefix + plane);
     }
     planes.insert(planes.end(), {"radiosity", "irradiance"});

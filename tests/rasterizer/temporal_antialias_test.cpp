@@ -154,14 +154,15 @@ template <class Walk>
 void expect_agreement(GlContext& context, const Walk& walk, const AntialiasSettings& settings) {
     const int columns = walk.at(0).view.width(), rows = walk.at(0).view.height();
     Pipeline pipeline(context, walk.scene, method_with(settings),
-                      {.planes = {"total", "total.aliased", "depth", "displacement"}}, columns, rows);
+                      {.planes = {"total", "total.aliased", "depth", "moving_instance"}}, columns, rows);
     std::optional<counterpart::RenderedFrame> before;
     std::optional<counterpart::Resolved> history;
     const std::vector<glm::vec2> offsets = jitter_offsets(settings);
     for (std::size_t i = 0; i < 4; ++i) {
         const FrameRequest request = walk.frame(static_cast<int>(i));
         counterpart::RenderedFrame now{request.now.view.with_offset(offsets[i % offsets.size()]),
-                                       pipeline.render(request).frame};
+                                       pipeline.render(request).frame,
+                                       counterpart::motions_between(walk.scene, request.now, *request.previous)};
         const counterpart::ResolvedRange expected =
             counterpart::resolved_range(now, before ? &*before : nullptr, history ? &*history : nullptr, settings);
         const Image& actual = now.planes.plane("total");

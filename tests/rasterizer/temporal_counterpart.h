@@ -39,7 +39,7 @@ inline glm::dvec3 ray_through(const View& view, double x, double y) {
 inline glm::dvec3 eye_of(const View& view) { return glm::dvec3(view.camera().position()); }
 
 // One frame, with the view that it was rendered with, and how each instance that moves has moved since the frame
-// before: matrices that take world space of now to world space of then.
+// before, in their order in the scene: matrices that take world space of now to world space of then.
 struct RenderedFrame {
     View view;
     Frame planes;
@@ -63,36 +63,28 @@ inline glm::dvec3 vector_of(const Image& image, int x, int y) {
 // The surface point of a pixel, now and, with what the G-buffer says of its instance, in the frame before.
 struct SurfacePoint {
     glm::dvec3 now, before;  // world space
+    glm::dmat4 motion;       // of its instance
 };
 
-// None where nothing is seen. `displacement` is in the camera space of now; `prefix` is that of the layer's planes.
+// None where nothing is seen. `prefix` is that of the layer's planes.
 inline std::optional<SurfacePoint> surface_point(const RenderedFrame& frame, int x, int y,
                                                  const std::string& prefix = "") {
     const double depth = frame.planes.plane(prefix + "depth").at(x, y);
     if (std::isinf(depth)) return {};
     SurfacePoint point;
     point.now = eye_of(frame.view) + depth * ray_through(frame.view, x + 0.5, y + 0.5);
-    point.before = point.now;
-    if (frame.planes.has(prefix + "displacement")) {
-        point.before += glm::dmat3(frame.view.camera().world_from_camera) *
-                        vector_of(frame.planes.plane(prefix + "displacement"), x, y);
+    point.motion = glm::dmat4(1.0);
+    if (frame.planes.has(prefix + "moving_instance")) {
+        const auto number = static_cast<std::size_t>(frame.planes.plane(prefix + "moving_instance").at(x, y));
+        if (number > 0) point.motion = frame.before_from_now.at(number - 1);
     }
+    point.before = glm::dvec3(point.motion * glm::dvec4(point.now, 1.0));
     return point;
 }
 
-// Where the normal of a surface point was pointing in the frame before: turned as the instance that the point belongs
-// to has turned, which is the one whose motion brings it to where it was.
-inline glm::dvec3 normal_before(const RenderedFrame& frame, const SurfacePoint& point, const glm::dvec3& normal) {
-    if (point.before == point.now) return normal;
-    glm::dvec3 found = normal;
-    double nearest = std::numeric_limits<double>::infinity();
-    for (const glm::dmat4& motion : frame.before_from_now) {
-        const double distance = glm::length(glm::dvec3(motion * glm::dvec4(point.now, 1.0)) - point.before);
-        if (distance >= nearest) continue;
-        nearest = distance;
-        found = glm::normalize(glm::transpose(glm::inverse(glm::dmat3(motion))) * normal);
-    }
-    return found;
+// Where the normal of a surface point was pointing in the frame before: turned as its instance has turned.
+inline glm::dvec3 normal_before(const SurfacePoint& point, const glm::dvec3& normal) {
+    return glm::normalize(glm::transpose(glm::inverse(glm::dmat3(point.motion))) * normal);
 }
 
 struct Accumulated {
@@ -125,7 +117,7 @@ inline Accumulated accumulate(const RenderedFrame& now, const RenderedFrame& bef
     const glm::dvec3 place = seen_at(before.view, point->before) + glm::dvec3(doubt.place, 0.0);
     if (place.z <= 0.0) return result;
     const glm::dvec3 normal =
-        glm::normalize(normal_before(now, *point, vector_of(now.planes.plane(prefix + "normal"), x, y)) + doubt.normal);
+        glm::normalize(normal_before(*point, vector_of(now.planes.plane(prefix + "normal"), x, y)) + doubt.normal);
     const glm::dvec3 from_eye = point->before - eye_of(before.view);
     const auto nearest_to = [&](const glm::dvec3& ray, double expected, double column, double row) {
         double distance = std::numeric_limits<double>::infinity();
@@ -179,13 +171,11 @@ inline AccumulatedRange accumulated_range(const RenderedFrame& now, const Render
     const Accumulated exact = accumulate(now, before, this_frame, history, settings, x, y, layer);
     AccumulatedRange range{exact, exact};
     const std::string prefix = layer == 0 ? "" : "layer2.";
-    const std::optional<SurfacePoint> point = surface_point(now, x, y, prefix);
-    if (!point) return range;
+    if (!surface_point(now, x, y, prefix)) return range;
     // Positions some metres away are good to 1.5e-6 m in float, and a metre away there are 100 to 200 pixels to a
     // metre.
     constexpr double of_place = 3e-4, of_depth = 1e-6;
-    // The normal of then, of what has turned, has 15 and 16 bits (code_of_normal); else it is read from the same bits.
-    const double of_normal = point->now == point->before ? 1e-6 : 6e-5;
+    constexpr double of_normal = 1e-6;  // read from the same bits, and turned in float
     for (const double dx : {-of_place, of_place}) {
         for (const double dy : {-of_place, of_place}) {
             for (int axis = 0; axis < 6; ++axis) {

@@ -79,8 +79,8 @@ TEST_P(TemporalFilterLayersTest, WhatComesToLightIsFoundInTheSecondLayerHoweverI
 TEST_P(TemporalFilterLayersTest, TheSecondLayersLightAgreesWithItsCounterpart) {
     const std::vector<std::string> planes{"depth",
                                           "layer2.depth",
-                                          "displacement",
-                                          "layer2.displacement",
+                                          "moving_instance",
+                                          "layer2.moving_instance",
                                           "normal",
                                           "layer2.normal",
                                           "layer2.radiosity.of_frame",
