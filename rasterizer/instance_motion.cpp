@@ -41,7 +41,8 @@ void InstanceMotions::update(const Moment& now, const Moment& previous) {
         *record = {};
         if (previous_pose != pose) {
             const glm::dmat4 moved = glm::dmat4(previous_pose) * glm::inverse(glm::dmat4(pose));
-            record->displacement = glm::mat4(camera_from_world * (moved - glm::dmat4(1.0)) * world_from_camera);
+            const glm::dmat4 displacement = camera_from_world * (moved - glm::dmat4(1.0)) * world_from_camera;
+            record->displacement_rows = glm::mat3x4(glm::mat4(glm::transpose(displacement)));
             const glm::dmat3 turn = glm::transpose(glm::inverse(glm::dmat3(moved)));
             record->previous_normal_from_normal = glm::mat3x4(glm::dmat3x4(turn));
         }

@@ -26,14 +26,14 @@ public:
 private:
     // std430 layout of InstanceMotion in instance_motion.glsl.
     struct Record {
-        glm::mat4 displacement{0.0f};
+        glm::mat3x4 displacement_rows{0.0f};
         glm::mat3x4 previous_normal_from_normal{1.0f};
     };
-    static_assert(sizeof(Record) == 112);
+    static_assert(sizeof(Record) == 96);
     static constexpr GLuint binding = 6;  // those of lights come before (light_buffers.h)
 
     const Scene& scene_;
-    std::vector<Record> records_;  // the first is of what stands still
+    std::vector<Record> records_;  // by number; the first, of what stands still, is not read
     GlBuffer buffer_;
 };
 
