@@ -25,7 +25,7 @@ PanelSubject subject_of(const ResultRow& row) { return {row.scene, row.plane, ro
 
 // With a time and an error that logarithmic axes can show.
 bool is_drawable(const ResultRow& row) {
-    return row.measured && row.oracle_layers < 0 && row.rmse() > 0.0 && row.timing.median > 0.0;
+    return row.measured && !row.oracle.any() && row.rmse() > 0.0 && row.timing.median > 0.0;
 }
 
 std::vector<PanelSubject> subjects_of(const RunResults& results) {

@@ -27,7 +27,7 @@ Json json_of(const PlaneImage& image) {
             {"plane", image.plane},
             {"method", image.method},
             {"path_tracer_samples", image.path_tracer_samples},
-            {"oracle_layers", image.oracle_layers},
+            {"oracle", {image.oracle.layers, image.oracle.bounces}},
             {"other_seeds", image.other_seeds.size()},
             {"bytes", image.gbuffer_bytes_per_pixel},
             {"timing", {image.timing.median, image.timing.lower_quartile, image.timing.upper_quartile}},
@@ -38,7 +38,8 @@ Json json_of(const PlaneImage& image) {
 PlaneImage image_of(const Json& json) {
     PlaneImage image;
     image.view = json.at("view"), image.plane = json.at("plane"), image.method = json.at("method");
-    image.path_tracer_samples = json.at("path_tracer_samples"), image.oracle_layers = json.at("oracle_layers");
+    image.path_tracer_samples = json.at("path_tracer_samples");
+    image.oracle = {json.at("oracle").at(0), json.at("oracle").at(1)};
     image.gbuffer_bytes_per_pixel = json.at("bytes");
     const Json& timing = json.at("timing");
     image.timing = {timing.at(0), timing.at(1), timing.at(2), json.at("repetitions"), {}};

@@ -21,7 +21,7 @@ ConfigValue take_members(ConfigValue& table, const std::vector<std::string>& key
 
 // The names that rows of the experiment can have in `method`; the oracle's are the runner's business.
 bool is_row_of_experiment(const Experiment& experiment, const std::string& pattern) {
-    if (pattern.starts_with("oracle")) return !experiment.oracle_layers.empty();
+    if (pattern.starts_with("oracle")) return !experiment.oracle_layers.empty() || !experiment.oracle_bounces.empty();
     if (pattern.starts_with("path tracer")) return !experiment.path_tracer_samples.empty();
     return std::ranges::any_of(experiment.methods,
                                [&](const Method& method) { return matches_pattern(pattern, method.name); });

@@ -43,7 +43,8 @@ DiskUse disk_use(const Experiment& experiment, LoadedScenes& scenes, bool write_
         full += bytes;
         if (has_limited_truth(plane)) limited += bytes;
     }
-    const std::uintmax_t methods = experiment.methods.size(), oracles = experiment.oracle_layers.size();
+    const std::uintmax_t methods = experiment.methods.size(),
+                         oracles = experiment.oracle_layers.size() + experiment.oracle_bounces.size();
     const auto seeds = static_cast<std::uintmax_t>(experiment.seeds);
     const std::uintmax_t curve = experiment.path_tracer_samples.size();
     DiskUse use;

@@ -116,6 +116,29 @@ void read_timing(ConfigReader& reader, Experiment& experiment) {
     }
 }
 
+void read_oracle(ConfigReader& reader, Experiment& experiment) {
+    experiment.oracle_layers = reader.integers("oracle", {}, 0, 16);
+    experiment.oracle_bounces = reader.integers("oracle_bounces", {}, 1, most_diffuse_bounces);
+    if (experiment.oracle_bounces.empty()) return;
+    if (std::ranges::none_of(experiment.planes, has_light_of_bounces)) {
+        reader.fail("oracle_bounces",
+                    fmt::format("no plane of {} has light of bounces; compare indirect, irradiance, reflection or "
+                                "total, or remove it",
+                                fmt::join(experiment.planes, ", ")));
+    }
+    std::set<int> seen;
+    for (const int bounces : experiment.oracle_bounces) {
+        if (bounces >= experiment.quantities.bounces) {
+            reader.fail("oracle_bounces",
+                        fmt::format("holds {}, but must hold fewer than the truth has, which are {}; take fewer, or "
+                                    "raise 'bounces' in [quantities]",
+                                    bounces, experiment.quantities.bounces));
+        }
+        if (!seen.insert(bounces).second)
+            reader.fail("oracle_bounces", fmt::format("holds {} twice; remove one", bounces));
+    }
+}
+
 // One value of a swept parameter, as a name shows it.
 std::string sweep_text(const ConfigValue& value) {
     if (const auto* whole = std::get_if<std::int64_t>(&value.value)) return fmt::format("{}", *whole);
@@ -286,7 +309,7 @@ Experiment parse_experiment(const ConfigValue& table, const std::filesystem::pat
     for (const ExperimentScene& scene : experiment.scenes) {
         if (!names.insert(scene.scene).second) reader.fail("scenes", fmt::format("'{}' is there twice", scene.scene));
     }
-    experiment.oracle_layers = reader.integers("oracle", {}, 0, 16);
+    read_oracle(reader, experiment);
     MethodSelection selection = read_methods(reader, experiment.planes, kept);
     experiment.methods = std::move(selection.methods);
     experiment.sweep_points = std::move(selection.sweep_points);
@@ -394,6 +417,10 @@ void make_quick(Experiment& experiment) {
         for (ExperimentPath& path : scene.paths) path.frames = std::min(path.frames, 3);
     }
     experiment.quick = true;
+}
+
+bool has_light_of_bounces(const std::string& plane) {
+    return plane == "indirect" || plane == "irradiance" || plane == "reflection" || plane == "total";
 }
 
 std::vector<std::string> views_of(const ExperimentScene& entry, const Scene& scene) {

@@ -85,6 +85,8 @@ struct Experiment {
     std::vector<int> path_tracer_samples = {4, 16};  // the path tracer's own points in the chart; empty: none
     // Layers that the oracle's rows may see, the best that any method could make of them; 0: all that is in view.
     std::vector<int> oracle_layers;
+    // Bounces of further rows of the oracle, fewer than the truth's: the best that any method of so many could do.
+    std::vector<int> oracle_bounces;
     std::vector<ExperimentScene> scenes;
     MethodList methods;
     MethodFiles method_files;                        // that some of them came from
@@ -143,6 +145,9 @@ void require_effects_in_scenes(const Experiment& experiment, LoadedScenes& scene
 void make_small(Experiment& experiment);
 // ...and one view per scene.
 void make_quick(Experiment& experiment);
+
+// Whether the light of further bounces is part of the plane.
+bool has_light_of_bounces(const std::string& plane);
 
 // The views of the scene that the experiment asks for; all where it names none.
 std::vector<std::string> views_of(const ExperimentScene& entry, const Scene& scene);

@@ -30,6 +30,7 @@ Ladder read_ladder(ConfigReader& reader, const Experiment& experiment) {
     if (ladder.rungs.empty()) reader.fail("rungs", "must name at least one method or oracle");
     std::vector<std::string> names;
     for (const int layers : experiment.oracle_layers) names.push_back(oracle_name(layers));
+    for (const int bounces : experiment.oracle_bounces) names.push_back(oracle_name_of_bounces(bounces));
     for (const Method& method : experiment.methods) names.push_back(method.name);
     for (const std::string& rung : ladder.rungs) {
         if (std::ranges::find(names, rung) != names.end()) continue;

@@ -104,9 +104,10 @@ std::vector<Cell> cells_of(const RunResults& results) {
         Cell cell{row.scene, row.place(), row.plane, truth_class(row.truth), row.method, row.curve};
         if (!row.curve.empty()) cell.parameter = row.curve_value;
         if (row.path_tracer_samples > 0) cell.curve = "path tracer", cell.parameter = row.path_tracer_samples;
+        if (row.oracle.bounces > 0) cell.curve = "oracle, bounces", cell.parameter = row.oracle.bounces;
         if (row.measured) add_errors(row, cell);
         if (row.lag) cell.set("lag", row.lag->value);
-        if (row.oracle_layers < 0 && row.timing.repetitions > 0) {
+        if (!row.oracle.any() && row.timing.repetitions > 0) {
             cell.set("ms", row.timing.median);
             for (const PassTiming& pass : row.timing.passes)
                 cell.set(fmt::format("ms of {}", pass.pass), pass.milliseconds);

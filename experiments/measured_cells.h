@@ -31,7 +31,7 @@ struct Cell {
     std::string plane;
     std::string truth;   // "full", "limited", or empty where a plane has one truth only
     std::string method;  // a method, "oracle..." or "path tracer..."
-    std::string curve;   // of methods that differ in one parameter; "path tracer" over its samples
+    std::string curve;   // of methods that differ in one parameter; "path tracer" over its samples, "oracle, bounces"
     double parameter = std::numeric_limits<double>::quiet_NaN();  // where on the curve
     std::vector<std::pair<std::string, double>> values = {};      // measures that are finite
 

@@ -160,10 +160,11 @@ std::vector<MethodParameter> method_parameters(Method& m) {
                       {
                           {"antialias.temporal", &m.antialias.temporal},
                           {"antialias.jitter_length", &m.antialias.jitter_length, 1, 1024},
+                          {"antialias.reprojection", &m.antialias.reprojection},
                           {"antialias.alpha", &m.antialias.alpha, 0, 0.9999},
-                          {"antialias.clamp", &m.antialias.clamp},
                           {"antialias.dilate", &m.antialias.dilate},
                           {"antialias.lookup", choice(m.antialias.lookup, {"bilinear", "catmull_rom"})},
+                          {"antialias.clamp", &m.antialias.clamp},
                       });
     parameters.insert(parameters.end(), {
                                             {"composite.kind", choice(m.composite.kind, {"physical", "demo"})},

@@ -3,25 +3,52 @@
 #include "metrics/referenced_error.h"
 
 namespace plumb {
+namespace {
+
+// The planes of one rendering, as images without the numbers that say of which oracle they are. Empty where it is not
+// complete.
+std::vector<PlaneImage> render_planes(const std::string& place, const ReferenceSettings& settings,
+                                      const std::string& name, const OracleRender& render) {
+    std::vector<PlaneImage> images;
+    ReferenceResult result = render(settings, name);
+    if (!result.complete) return images;
+    for (const std::string& plane : settings.quantities.planes) {
+        PlaneImage& image = images.emplace_back(PlaneImage{place, plane, name, std::move(result.frame.plane(plane))});
+        image.halves = {std::move(result.frame.plane(half_a_of(plane))),
+                        std::move(result.frame.plane(half_b_of(plane)))};
+    }
+    return images;
+}
+
+}  // namespace
 
 std::vector<PlaneImage> oracle_images(const Experiment& experiment, const ExperimentScene& entry,
                                       const std::string& place, const View& view, ReferenceSettings settings,
                                       const Frame& truth, const OracleRender& render) {
     std::vector<PlaneImage> images;
-    settings.quantities.planes = experiment.planes;
-    std::erase_if(settings.quantities.planes, [&](const std::string& plane) { return !has_halves(truth, plane); });
-    if (settings.quantities.planes.empty()) return images;
+    std::vector<std::string>& planes = settings.quantities.planes;
+    planes = experiment.planes;
+    std::erase_if(planes, [&](const std::string& plane) { return !has_halves(truth, plane); });
+    if (planes.empty()) return images;
     for (const int layers : experiment.oracle_layers) {
         settings.oracle = OracleSettings{view, layers, entry.minimum_separation};
-        const std::string name = oracle_name(layers);
-        ReferenceResult result = render(settings, name);
-        if (!result.complete) break;
-        for (const std::string& plane : settings.quantities.planes) {
-            PlaneImage& image =
-                images.emplace_back(PlaneImage{place, plane, name, std::move(result.frame.plane(plane))});
-            image.oracle_layers = layers;
-            image.halves = {std::move(result.frame.plane(half_a_of(plane))),
-                            std::move(result.frame.plane(half_b_of(plane)))};
+        std::vector<PlaneImage> made = render_planes(place, settings, oracle_name(layers), render);
+        if (made.empty()) return images;
+        for (PlaneImage& image : made) {
+            image.oracle.layers = layers;
+            images.push_back(std::move(image));
+        }
+    }
+    settings.oracle.reset();
+    std::erase_if(planes, [](const std::string& plane) { return !has_light_of_bounces(plane); });
+    if (planes.empty()) return images;
+    for (const int bounces : experiment.oracle_bounces) {
+        settings.quantities.bounces = bounces;
+        std::vector<PlaneImage> made = render_planes(place, settings, oracle_name_of_bounces(bounces), render);
+        if (made.empty()) return images;
+        for (PlaneImage& image : made) {
+            image.oracle.bounces = bounces;
+            images.push_back(std::move(image));
         }
     }
     return images;

@@ -14,8 +14,10 @@ namespace plumb {
 using OracleRender = std::function<ReferenceResult(const ReferenceSettings& settings, const std::string& name)>;
 
 // The truth as rays see it that meet only what layers of `view` hold, once for each number of layers that the
-// experiment asks for: those of its planes that have halves in `truth`, with halves of their own. `settings` are the
-// truth's, down to the samples: what both have in common cancels in their difference. `place` names the view or path.
+// experiment asks for, and the truth of fewer bounces, once for each number of those: the planes of the experiment that
+// have halves in `truth`, with halves of their own; of fewer bounces only those that have light of bounces. `settings`
+// are the truth's, down to the samples: what both have in common cancels in their difference. `place` names the view or
+// path.
 std::vector<PlaneImage> oracle_images(const Experiment& experiment, const ExperimentScene& entry,
                                       const std::string& place, const View& view, ReferenceSettings settings,
                                       const Frame& truth, const OracleRender& render);

@@ -59,11 +59,11 @@ Json stability_json(const ResultRow& row) {
 }
 
 std::string_view kind_of(const ResultRow& row) {
-    return row.is_method() ? "method" : row.oracle_layers >= 0 ? "oracle" : "path tracer";
+    return row.is_method() ? "method" : row.oracle.any() ? "oracle" : "path tracer";
 }
 
 Json page_row(const ResultRow& row) {
-    const bool timed = row.oracle_layers < 0;
+    const bool timed = !row.oracle.any();
     const bool has_quartiles = timed && row.timing.repetitions > 1;
     const Json none = nullptr;
     return {{"scene", row.scene},

@@ -52,9 +52,13 @@ std::string temporal_reason(const Method& method, std::string_view name) {
     }
     if (name.starts_with("antialias.") && name != "antialias.temporal" && !method.antialias.temporal)
         return "antialias.temporal = false";
-    constexpr std::array of_history = {"antialias.clamp", "antialias.dilate", "antialias.lookup"};
+    constexpr std::array of_history = {"antialias.clamp", "antialias.reprojection", "antialias.dilate",
+                                       "antialias.lookup"};
     if (is_one_of(name, of_history) && method.antialias.alpha == 0.0f)
         return "antialias.alpha = 0 takes nothing from the frames before";
+    constexpr std::array of_motion = {"antialias.dilate", "antialias.lookup"};
+    if (is_one_of(name, of_motion) && !method.antialias.reprojection)
+        return "antialias.reprojection = false takes the same pixel of the frame before";
     return "";
 }
 

@@ -63,16 +63,15 @@ void add_to(Image& sum, const Image& image, float weight) {
 
 // What one method makes of one plane, frame after frame.
 struct PathRun::Series {
-    Series(const Experiment& experiment, std::string of_plane, std::string of_method, int of_oracle_layers = -1)
+    Series(const Experiment& experiment, std::string of_plane, std::string of_method)
         : plane(std::move(of_plane)),
           method(std::move(of_method)),
-          oracle_layers(of_oracle_layers),
           errors(plane, SeriesOf::frames, series_settings(experiment)),
           stability(plane, stability_settings(experiment)),
           lag(plane) {}
 
     std::string plane, method;
-    int oracle_layers;  // as ResultRow has it
+    OracleLimits oracle;  // as ResultRow has it
     std::unique_ptr<Pipeline> pipeline;
     int gbuffer_bytes_per_pixel = 0;
     PlaneSeries errors;
@@ -130,7 +129,7 @@ std::vector<std::vector<PlaneImage>> PathRun::load_cells() const {
 
 void PathRun::make_pipelines(RunResults& results) {
     for (const std::unique_ptr<Series>& series : series_) {
-        if (series->oracle_layers >= 0) continue;
+        if (series->oracle.any()) continue;
         const Quantities quantities = quantities_of(experiment_, entry_, series->plane);
         try {
             series->pipeline = std::make_unique<Pipeline>(control_.context, scene_, method_of(*series), quantities,
@@ -143,7 +142,7 @@ void PathRun::make_pipelines(RunResults& results) {
         }
     }
     std::erase_if(series_,
-                  [](const std::unique_ptr<Series>& series) { return series->oracle_layers < 0 && !series->pipeline; });
+                  [](const std::unique_ptr<Series>& series) { return !series->oracle.any() && !series->pipeline; });
 }
 
 Method PathRun::method_of(const Series& series) const {
@@ -251,7 +250,7 @@ bool PathRun::time_methods(const std::string& plane, RunResults& results) {
             {fmt::format("{} / {} / {} / timing", entry_.scene, path_.path, plane), error.what()});
         // No error is told without its time.
         std::erase_if(series_, [&](const std::unique_ptr<Series>& series) {
-            return series->plane == plane && series->oracle_layers < 0;
+            return series->plane == plane && !series->oracle.any();
         });
         return false;
     }
@@ -330,19 +329,22 @@ void PathRun::add(const PlaneImage& image, int frame, const Frame& truth, const 
     if (whole.referenced) measure.rmse = std::sqrt(std::max(0.0, whole.referenced->mse));
     if (const std::optional<Flicker> flicker = series.stability.add(test, truth, nullptr, regions))
         measure.flicker = flicker->rms;
-    if (tells_lag_ && series.oracle_layers < 0) series.lag.add(test, truth);
+    if (tells_lag_ && !series.oracle.any()) series.lag.add(test, truth);
     series.frames.push_back(measure);
-    if (series.oracle_layers < 0) series.images.push_back(image.image);  // pictures show methods
-    if (frame == 0) series.timing = image.timing;                        // of all frames, where a cell has it
+    if (!series.oracle.any()) series.images.push_back(image.image);  // pictures show methods
+    if (frame == 0) series.timing = image.timing;                    // of all frames, where a cell has it
     series.gbuffer_bytes_per_pixel = image.gbuffer_bytes_per_pixel;
 }
 
 void PathRun::run(RunResults& results) {
     for (const std::string& plane : experiment_.planes) {
-        for (const Method& method : experiment_.methods)
-            series_.push_back(std::make_unique<Series>(experiment_, plane, method.name));
-        for (const int layers : experiment_.oracle_layers)
-            series_.push_back(std::make_unique<Series>(experiment_, plane, oracle_name(layers), layers));
+        const auto add_series = [&](const std::string& name) -> Series& {
+            return *series_.emplace_back(std::make_unique<Series>(experiment_, plane, name));
+        };
+        for (const Method& method : experiment_.methods) add_series(method.name);
+        for (const int layers : experiment_.oracle_layers) add_series(oracle_name(layers)).oracle.layers = layers;
+        for (const int bounces : experiment_.oracle_bounces)
+            add_series(oracle_name_of_bounces(bounces)).oracle.bounces = bounces;
     }
     const std::vector<std::vector<PlaneImage>> kept = load_cells();
     if (kept.empty()) make_pipelines(results);
@@ -391,7 +393,7 @@ void PathRun::write_rows(RunResults& results) {
         ResultRow row;
         row.scene = entry_.scene, row.path = path_.path, row.plane = series->plane, row.method = series->method;
         row.truth = full_truth_name(series->plane);
-        row.oracle_layers = series->oracle_layers;
+        row.oracle = series->oracle;
         if (row.is_method()) describe_method(experiment_, entry_, series->method, row);
         row.reference_samples = reference_samples_;
         row.gbuffer_bytes_per_pixel = series->gbuffer_bytes_per_pixel;
@@ -415,7 +417,7 @@ void PathRun::write_pictures(RunResults& results) {
         const std::string& name = experiment_.planes[plane];
         std::vector<PathImages> methods;
         for (const std::unique_ptr<Series>& series : series_) {
-            if (series->plane != name || series->oracle_layers >= 0) continue;
+            if (series->plane != name || series->oracle.any()) continue;
             PathImages& images = methods.emplace_back(PathImages{series->method, {}, {}, {}});
             for (const Image& image : series->images) images.frames.push_back(&image);
             for (const FrameMeasure& frame : series->frames)

@@ -19,7 +19,7 @@ struct PlaneImage {
     std::string view, plane, method;
     Image image;
     int path_tracer_samples = 0;
-    int oracle_layers = -1;  // as ResultRow has it
+    OracleLimits oracle = {};  // as ResultRow has it
     Timing timing = {};
     int gbuffer_bytes_per_pixel = 0;
     std::optional<ImageHalves> halves = {};  // of the oracle

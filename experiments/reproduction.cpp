@@ -29,7 +29,7 @@ CellNames names_of(const Experiment& experiment) {
     CellNames names;
     for (const ExperimentScene& scene : experiment.scenes) names.of["scene"].push_back(scene.scene);
     for (const Method& method : experiment.methods) names.of["method"].push_back(method.name);
-    names.of["curve"].push_back("path tracer");
+    for (const char* curve : {"path tracer", "oracle, bounces"}) names.of["curve"].emplace_back(curve);
     for (const auto& entry : experiment.sweep_points) names.of["curve"].push_back(entry.second.curve);
     names.of["plane"] = experiment.planes;
     names.of["truth"] = {"full", "limited"};

@@ -72,8 +72,9 @@ Json row_json(const ResultRow& row) {
         json["sweep"] = {{"curve", row.curve}, {"parameter", row.curve_parameter}, {"value", row.curve_value}};
     if (row.path_tracer_samples > 0) {
         json["path_tracer_samples"] = row.path_tracer_samples;
-    } else if (row.oracle_layers >= 0) {
-        json["oracle_layers"] = row.oracle_layers;
+    } else if (row.oracle.any()) {
+        if (row.oracle.layers >= 0) json["oracle_layers"] = row.oracle.layers;
+        if (row.oracle.bounces > 0) json["oracle_bounces"] = row.oracle.bounces;
     } else {
         json["method_hash"] = fmt::format("{:016x}", method_hash(row.parameters));
         json["parameters"] = parameters_of(row.parameters);
@@ -121,6 +122,7 @@ Json experiment_json(const Experiment& experiment) {
                  {"file", experiment.file.filename().string()},
                  {"quick", experiment.quick}};
     json["oracle"] = experiment.oracle_layers;
+    json["oracle_bounces"] = experiment.oracle_bounces;
     json["planes"] = experiment.planes;
     json["resolution"] = {experiment.width, experiment.height};
     json["bounces"] = experiment.quantities.bounces;
@@ -206,16 +208,18 @@ std::string csv_text(const std::string& text) {
 
 std::string print_csv(const RunResults& results) {
     std::string text = fmt::format(
-        "{},curve,curve_parameter,curve_value,oracle_layers,path_tracer_samples,measured,reference_samples,seeds,"
+        "{},curve,curve_parameter,curve_value,oracle_layers,oracle_bounces,path_tracer_samples,measured,reference_"
+        "samples,seeds,"
         "mse_lower_over_seeds,mse_upper_over_seeds{}{},lag,lag_lower,lag_upper{},milliseconds,"
         "milliseconds_lower_quartile,milliseconds_upper_quartile,repetitions,gbuffer_bytes_per_pixel,refusal\n",
         row_columns, columns(measure_names()), columns(stability_names()), columns(fidelity_names()));
     for (const ResultRow& row : results.rows) {
         const Estimate lag = row.lag.value_or(Estimate{no_value, no_value, no_value});
         text += fmt::format(
-            "{},{},{},{},{},{},{},{},{},{},{}{}{},{},{},{}{},{},{},{},{},{},{}\n", row_names(row), csv_text(row.curve),
-            csv_text(row.curve_parameter), row.curve.empty() ? "" : csv_number(row.curve_value),
-            row.oracle_layers >= 0 ? fmt::format("{}", row.oracle_layers) : "", row.path_tracer_samples,
+            "{},{},{},{},{},{},{},{},{},{},{},{}{}{},{},{},{}{},{},{},{},{},{},{}\n", row_names(row),
+            csv_text(row.curve), csv_text(row.curve_parameter), row.curve.empty() ? "" : csv_number(row.curve_value),
+            row.oracle.layers >= 0 ? fmt::format("{}", row.oracle.layers) : "",
+            row.oracle.bounces > 0 ? fmt::format("{}", row.oracle.bounces) : "", row.path_tracer_samples,
             row.measured ? 1 : 0, row.reference_samples, row.seeds, csv_number(row.seeds_mse_lower),
             csv_number(row.seeds_mse_upper), values(measure_names(), row.measures), stability_values(row.stability),
             csv_number(lag.value), csv_number(lag.lower), csv_number(lag.upper), values(fidelity_names(), row.fidelity),

@@ -29,4 +29,8 @@ std::string oracle_name(int layers) {
     return fmt::format("oracle, {} layer{}", layers, layers == 1 ? "" : "s");
 }
 
+std::string oracle_name_of_bounces(int bounces) {
+    return fmt::format("oracle, {} bounce{}", bounces, bounces == 1 ? "" : "s");
+}
+
 }  // namespace plumb

@@ -40,6 +40,14 @@ struct FrameMeasure {
     double flicker = 0.0;  // since the frame before; NaN for the first
 };
 
+// What the truth is limited to in a row of the oracle: the best that any method could make of it.
+struct OracleLimits {
+    int layers = -1;  // of the view, which rays may meet; 0: all in view; -1: no such limit
+    int bounces = 0;  // of light, at most; 0: no such limit
+
+    bool any() const { return layers >= 0 || bounces > 0; }
+};
+
 struct ResultRow {
     std::string scene, view, plane, method;
     std::string path;             // a camera path; `view` is empty then, and errors are over all of its frames
@@ -69,12 +77,12 @@ struct ResultRow {
 
     std::string curve, curve_parameter;  // of a method that a sweep made; empty: none
     double curve_value = 0.0;
-    int oracle_layers = -1;  // the oracle with so many layers, 0 for all in view; it takes no time. -1: a method
+    OracleLimits oracle;  // of the rows of the oracle, which take no time
 
     Timing timing;
     int gbuffer_bytes_per_pixel = 0;  // as far as this plane needs a G-buffer; the path tracer's rows: 0
 
-    bool is_method() const { return path_tracer_samples == 0 && oracle_layers < 0; }
+    bool is_method() const { return path_tracer_samples == 0 && !oracle.any(); }
     const std::string& place() const { return path.empty() ? view : path; }
     double rmse() const;
     double rmse_lower() const;
@@ -86,6 +94,8 @@ double measure_named(const std::vector<std::pair<std::string, double>>& measures
 
 // What the oracle's rows are called: "oracle, 2 layers", "oracle, all in view" for 0.
 std::string oracle_name(int layers);
+// "oracle, 2 bounces".
+std::string oracle_name_of_bounces(int bounces);
 
 struct Picture {
     std::string label;        // "truth" or a method's name

@@ -36,7 +36,7 @@ std::vector<std::string> RowGroup::oracles() const {
     std::map<int, std::string> names;
     for (const auto& [place, rows] : places) {
         for (const auto& [name, row] : rows) {
-            if (row->oracle_layers >= 0) names[row->oracle_layers == 0 ? INT_MAX : row->oracle_layers] = name;
+            if (row->oracle.layers >= 0) names[row->oracle.layers == 0 ? INT_MAX : row->oracle.layers] = name;
         }
     }
     std::vector<std::string> list;

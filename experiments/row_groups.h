@@ -23,7 +23,7 @@ struct RowGroup {
     std::string name() const;
     // "1 view", "6 paths"
     std::string count(int places) const;
-    // Names of the oracles, by their layers; all in view comes last.
+    // Names of the oracles of layers, by their number; all in view comes last.
     std::vector<std::string> oracles() const;
 };
 

@@ -159,7 +159,7 @@ ResultRow measure_row(const PlaneImage& image, const Truth& truth, const std::ve
                       const ComparisonSettings& settings) {
     ResultRow row;
     row.view = image.view, row.plane = image.plane, row.method = image.method, row.truth = truth.name;
-    row.path_tracer_samples = image.path_tracer_samples, row.oracle_layers = image.oracle_layers;
+    row.path_tracer_samples = image.path_tracer_samples, row.oracle = image.oracle;
     row.timing = image.timing;
     row.gbuffer_bytes_per_pixel = image.gbuffer_bytes_per_pixel;
     row.reference_samples = truth.samples;

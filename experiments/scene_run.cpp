@@ -270,7 +270,7 @@ void SceneRun::measure(const PlaneImage& image, RunResults& results) {
     for (const Truth& truth : truths_.at(image.view).of(image.plane)) {
         // The path tracer's curve and the oracle are light without a limit.
         const bool is_full = truth.frame == &truths_.at(image.view).full.frame;
-        if ((image.path_tracer_samples > 0 || image.oracle_layers >= 0) && !is_full) continue;
+        if ((image.path_tracer_samples > 0 || image.oracle.any()) && !is_full) continue;
         try {
             ResultRow row = measure_row(image, truth, regions_.at(image.view), comparison_settings(experiment_));
             row.scene = entry_.scene;

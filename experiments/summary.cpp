@@ -165,7 +165,7 @@ std::string print_results_table(const std::vector<ResultRow>& rows) {
         } else {
             cells.insert(cells.end(), {"refused (1)", "-", "-"});
         }
-        cells.push_back(row.oracle_layers >= 0 ? "-"
+        cells.push_back(row.oracle.any() ? "-"
                         : row.timing.repetitions > 1
                             ? with_interval(row.timing.median, row.timing.lower_quartile, row.timing.upper_quartile)
                             : short_number(row.timing.median));

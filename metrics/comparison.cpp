@@ -253,6 +253,7 @@ std::vector<std::pair<std::string, double>> PlaneComparison::measures() const {
     add("p99", errors.percentile_99);
     add("maximum", errors.maximum);
     add("data_range", errors.peak);
+    add("reference_mean", errors.reference_mean);
     add("values", static_cast<double>(errors.values));
     add("left_out", static_cast<double>(errors.left_out));
     for (const char* name :

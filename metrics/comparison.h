@@ -68,10 +68,11 @@ struct PlaneComparison {
 
     // All measures in a fixed order under fixed names, the same for every plane; NaN where one does not exist:
     // mae, mse, rmse, bias, relative_mse_pbrt, relative_mse_tev, relative_mse_falcor, psnr, ssim, ms_ssim, flip,
-    // flip_first_exposure, flip_last_exposure (stops; of radiance), median, p95, p99, maximum, data_range, values,
-    // left_out, unbiased_mse, unbiased_rmse, unbiased_relative_mse_pbrt, unbiased_relative_mse_tev,
-    // unbiased_relative_mse_falcor, unbiased_psnr, reference_noise_mse, noise_ratio, trustworthy (1 or 0). Each that
-    // has_interval() is followed by the ends of its 95 % interval, NAME_lower and NAME_upper.
+    // flip_first_exposure, flip_last_exposure (stops; of radiance), median, p95, p99, maximum, data_range,
+    // reference_mean, values, left_out, unbiased_mse, unbiased_rmse, unbiased_relative_mse_pbrt,
+    // unbiased_relative_mse_tev, unbiased_relative_mse_falcor, unbiased_psnr, reference_noise_mse, noise_ratio,
+    // trustworthy (1 or 0). Each that has_interval() is followed by the ends of its 95 % interval, NAME_lower and
+    // NAME_upper.
     std::vector<std::pair<std::string, double>> measures() const;
     double measure(std::string_view name) const;  // throws ImageError that lists the names
 

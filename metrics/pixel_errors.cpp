@@ -40,7 +40,7 @@ PixelErrors pixel_errors(const Image& test, const Image& reference, double peak,
     errors.peak = peak;
     std::vector<double> magnitudes;
     magnitudes.reserve(test.values().size());
-    double absolute = 0, squared = 0, signed_sum = 0, pbrt = 0, tev = 0, falcor = 0;
+    double absolute = 0, squared = 0, signed_sum = 0, reference_sum = 0, pbrt = 0, tev = 0, falcor = 0;
     for (int y = 0; y < test.height(); ++y) {
         for (int x = 0; x < test.width(); ++x) {
             if (!pixel_counts(mask, x, y)) continue;
@@ -57,6 +57,7 @@ PixelErrors pixel_errors(const Image& test, const Image& reference, double peak,
                 magnitudes.push_back(std::abs(difference));
                 absolute += std::abs(difference);
                 signed_sum += difference;
+                reference_sum += r;
                 squared += square(difference);
                 pbrt += square(difference) / relative_weight_pbrt(r);
                 tev += square(difference) / relative_weight_tev(r);
@@ -73,6 +74,7 @@ PixelErrors pixel_errors(const Image& test, const Image& reference, double peak,
     const auto count = static_cast<double>(errors.values);
     errors.mae = absolute / count;
     errors.bias = signed_sum / count;
+    errors.reference_mean = reference_sum / count;
     errors.mse = squared / count;
     errors.rmse = std::sqrt(errors.mse);
     errors.relative_mse_pbrt = pbrt / count;

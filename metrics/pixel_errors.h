@@ -6,6 +6,7 @@
 //   mae             mean |v - r|
 //   mse, rmse       mean (v - r)^2 and its root
 //   bias            mean (v - r): positive where the image is brighter than the reference
+//   reference_mean  mean r, of which the bias is a share
 //   relative MSE    mean (v - r)^2 / w(r), of which three definitions are in use; the numbers differ a lot in the dark:
 //     pbrt            w = (r + 0.01)^2    pbrt-v4, util/image.cpp, Image::MRSE
 //     tev             w = r^2 + 0.01      tev, UberShader.cpp, "relative squared error"
@@ -45,7 +46,7 @@ struct PixelErrors {
     std::size_t non_finite_reference = 0;  // ... in the reference; a value can be in both counts
     std::size_t left_out = 0;              // values not compared because one or both are not finite
 
-    double mae = 0, mse = 0, rmse = 0, bias = 0;
+    double mae = 0, mse = 0, rmse = 0, bias = 0, reference_mean = 0;
     double relative_mse_pbrt = 0, relative_mse_tev = 0, relative_mse_falcor = 0;
     double peak = 0, psnr = 0;
     double median = 0, percentile_95 = 0, percentile_99 = 0, maximum = 0;  // of |v - r|

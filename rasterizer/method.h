@@ -247,11 +247,12 @@ enum class HistoryLookup { bilinear, catmull_rom };
 // Anti-aliasing over frames, each of which is rendered with its pixels moved by a part of one (temporal_antialias.h).
 struct AntialiasSettings {
     bool temporal = false;
-    int jitter_length = 8;  // frames until the offsets repeat
-    bool dilate = true;     // motion is that of the nearest surface among the neighbours: edges move as one
-    float alpha = 0.9f;     // most weight of the frames before
-    bool clamp = true;      // they are held within the colours of the neighbouring pixels
+    int jitter_length = 8;     // frames until the offsets repeat
+    bool reprojection = true;  // the frames before are looked up where the surface then was; else at the same pixel
+    float alpha = 0.9f;        // their most weight
+    bool dilate = true;        // motion is that of the nearest surface among the neighbours: edges move as one
     HistoryLookup lookup = HistoryLookup::catmull_rom;
+    bool clamp = true;  // they are held within the colours of the neighbouring pixels
 };
 
 // How the terms become `total` (composite_pass.h): added, or as the demo of Mara et al. shows them.

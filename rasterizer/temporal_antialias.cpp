@@ -28,14 +28,21 @@ const GlTexture& create_resolved(PlaneTextures& planes) {
     return resolved;
 }
 
-ShaderDefines defines(const AntialiasSettings& settings, const Reprojection& reprojection, const InnerArea& area) {
-    ShaderDefines result = reprojection.defines();
+ShaderDefines defines(const AntialiasSettings& settings, const std::optional<Reprojection>& reprojection,
+                      const InnerArea& area) {
+    ShaderDefines result = reprojection ? reprojection->defines() : ShaderDefines();
+    result.emplace_back("REPROJECT", reprojection ? "1" : "0");
     result.emplace_back("LEAST_WEIGHT", shader_literal(1.0f - settings.alpha));
     result.emplace_back("CLAMP_HISTORY", settings.clamp ? "1" : "0");
-    result.emplace_back("DILATE", settings.dilate ? "1" : "0");
+    result.emplace_back("DILATE", reprojection && settings.dilate ? "1" : "0");
     result.emplace_back("CATMULL_ROM", settings.lookup == HistoryLookup::catmull_rom ? "1" : "0");
     result.emplace_back("MARGIN", std::to_string(area.corner().x));
     return result;
+}
+
+std::optional<Reprojection> make_reprojection(const PassResources& resources) {
+    if (!resources.method.antialias.reprojection) return std::nullopt;
+    return Reprojection(resources, antialias_instance_unit);
 }
 
 }  // namespace
@@ -57,8 +64,8 @@ std::string composited_plane(const Method& method) {
 
 TemporalAntialiasPass::TemporalAntialiasPass(const PassResources& resources)
     : aliased_(resources.planes.get(aliased_plane)),
-      depth_(resources.planes.get("depth")),
-      reprojection_(resources, antialias_instance_unit),
+      depth_(resources.method.antialias.reprojection ? &resources.planes.get("depth") : nullptr),
+      reprojection_(make_reprojection(resources)),
       area_(resources, {0, 0}),
       resolved_(create_resolved(resources.planes)),
       history_(*resources.planes.history_of(resolved_plane)),
@@ -69,9 +76,9 @@ TemporalAntialiasPass::TemporalAntialiasPass(const PassResources& resources)
 void TemporalAntialiasPass::execute(const PassFrame& frame) {
     history_.trade_places();
     aliased_.bind(0);
-    depth_.bind(1);
+    if (depth_) depth_->bind(1);
     history_.before().bind(2);
-    reprojection_.bind();
+    if (reprojection_) reprojection_->bind();
     draw_.program().set("has_history", frame.continues ? 1 : 0);
     const InnerArea::Restriction restriction(area_);
     draw_.draw(target_);
@@ -80,15 +87,19 @@ void TemporalAntialiasPass::execute(const PassFrame& frame) {
 PassDeclaration declare_temporal_antialias(const Scene& scene, const Method& method) {
     PassDeclaration pass;
     pass.name = "temporal antialias";
-    pass.inputs = {std::string(aliased_plane), "depth"};
-    for (std::string& plane : Reprojection::inputs(scene, 0)) pass.inputs.push_back(std::move(plane));
+    pass.inputs = {std::string(aliased_plane)};
+    if (method.antialias.reprojection) {
+        pass.inputs.emplace_back("depth");
+        for (std::string& plane : Reprojection::inputs(scene, 0)) pass.inputs.push_back(std::move(plane));
+    }
     pass.outputs = {resolved_plane};
     pass.parameters = {{"antialias."}};
     pass.kept = pass.outputs;
     pass.scratch = {resolved_before};
     pass.create = [](const PassResources& resources) { return std::make_unique<TemporalAntialiasPass>(resources); };
     if (!method.antialias.temporal) pass.disabled = "antialias.temporal is false";
-    pass.remark = fmt::format("{} offsets, alpha {}", method.antialias.jitter_length, method.antialias.alpha);
+    pass.remark = fmt::format("{} offsets, alpha {}{}", method.antialias.jitter_length, method.antialias.alpha,
+                              method.antialias.reprojection ? "" : ", not reprojected");
     return pass;
 }
 

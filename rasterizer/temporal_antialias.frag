@@ -1,11 +1,13 @@
 // One frame of temporal anti-aliasing; temporal_antialias.h has the formula.
 //
-// Defines: LEAST_WEIGHT (1 - alpha), CLAMP_HISTORY, DILATE, CATMULL_ROM (0, 1), MARGIN (pixels on each side that are not
-// resolved), and that of reprojection.glsl.
+// Defines: LEAST_WEIGHT (1 - alpha), CLAMP_HISTORY, REPROJECT, DILATE, CATMULL_ROM (0, 1; those two matter where
+// REPROJECT is 1), MARGIN (pixels on each side that are not resolved), and that of reprojection.glsl.
 #include "reprojection.glsl"
 
 layout(binding = 0) uniform sampler2DArray aliased;
+#if REPROJECT
 layout(binding = 1) uniform sampler2DArray depth_plane;
+#endif
 layout(binding = 2) uniform sampler2DArray history;  // alpha: over how many frames it is averaged
 uniform bool has_history;
 
@@ -17,6 +19,7 @@ ivec2 last_pixel = ivec2(view_size) - 1 - MARGIN;
 ivec2 within(ivec2 pixel) { return clamp(pixel, first_pixel, last_pixel); }
 vec4 history_at(ivec2 pixel) { return texelFetch(history, ivec3(within(pixel), 0), 0); }
 
+#if REPROJECT
 // `place` as gl_FragCoord.xy counts.
 vec4 bilinear_history(vec2 place) {
     vec2 corner = floor(place - 0.5), fraction = place - 0.5 - corner;
@@ -41,6 +44,19 @@ vec4 catmull_rom_history(vec2 place) {
     return max(sum, vec4(0.0));  // negative lobes must not leave less than no light
 }
 
+// Where the surface of `surface`, `depth` metres away, was when its motion is that of this pixel. False: behind the
+// camera or outside the image.
+bool moved_place(ivec2 surface, float depth, out vec2 place) {
+    PreviousPlace previous = previous_place(surface, 0, depth);
+    // Between the views without their offsets, in pixels.
+    vec2 now = vec2(surface) + 0.5 + 0.5 * view_size * view_shift;
+    vec2 then = previous.pixel + 0.5 * view_size * previous_view_shift;
+    place = gl_FragCoord.xy + then - now;
+    return previous.in_front && !any(lessThan(place, vec2(first_pixel))) &&
+           !any(greaterThan(place, vec2(last_pixel + 1)));
+}
+#endif
+
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     vec3 colour = texelFetch(aliased, ivec3(pixel, 0), 0).rgb;
@@ -48,8 +64,10 @@ void main() {
     if (!has_history) return;
 
     vec3 least = colour, greatest = colour;
+#if REPROJECT
     ivec2 surface = pixel;
     float depth = texelFetch(depth_plane, ivec3(pixel, 0), 0).r;
+#endif
     for (int i = 0; i < 9; ++i) {
         ivec2 neighbour = within(pixel + ivec2(i % 3, i / 3) - 1);
 #if CLAMP_HISTORY
@@ -66,18 +84,16 @@ void main() {
 #endif
     }
 
-    PreviousPlace previous = previous_place(surface, 0, depth);
-    if (!previous.in_front) return;
-    // Between the views without their offsets, in pixels.
-    vec2 now = vec2(surface) + 0.5 + 0.5 * view_size * view_shift;
-    vec2 then = previous.pixel + 0.5 * view_size * previous_view_shift;
-    vec2 place = gl_FragCoord.xy + then - now;
-    if (any(lessThan(place, vec2(first_pixel))) || any(greaterThan(place, vec2(last_pixel + 1)))) return;
-
+#if REPROJECT
+    vec2 place;
+    if (!moved_place(surface, depth, place)) return;
 #if CATMULL_ROM
     vec4 kept = catmull_rom_history(place);
 #else
     vec4 kept = bilinear_history(place);
+#endif
+#else
+    vec4 kept = history_at(pixel);
 #endif
 #if CLAMP_HISTORY
     kept.rgb = clamp(kept.rgb, least, greatest);

@@ -12,6 +12,8 @@
 // channel, of this frame's colours at the pixel and its eight neighbours (`clamp`). The surface is the one seen at the
 // pixel, or, with `dilate`, the nearest at the pixel and its neighbours: the smoothed edge of an object then moves with
 // the object. n = 1 where there is no history: outside the image, behind the camera, on first frames and cuts.
+// Without `reprojection`, `history` is total_(t-1) at the same pixel, whatever has moved: an average of frames, which
+// leaves ghosts of all that does.
 //
 // Without `clamp`, a still view's average is the exact mean of its frames until n reaches 1 / (1 - alpha); a box over
 // the pixel, as the path tracer's anti-aliased mode has it. With `clamp`, thin bright things that some offsets miss are
@@ -23,6 +25,7 @@
 //   are followed as if painted on the surface).
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -47,8 +50,9 @@ public:
 
 private:
     const GlTexture& aliased_;
-    const GlTexture& depth_;
-    Reprojection reprojection_;
+    // Without reprojection none.
+    const GlTexture* depth_;
+    std::optional<Reprojection> reprojection_;
     InnerArea area_;
     const GlTexture& resolved_;
     const PlaneHistory& history_;

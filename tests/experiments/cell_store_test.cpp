@@ -22,7 +22,7 @@ PlaneImage image_of(const std::string& method, float value) {
 TEST(CellStore, GivesBackEveryBitOfWhatItKept) {
     const TemporaryFolder folder;
     PlaneImage oracle = image_of("oracle, 2 layers", 0.25f);
-    oracle.oracle_layers = 2;
+    oracle.oracle = {.layers = 2, .bounces = 3};
     oracle.halves = {Image(5, 3, 1), Image(5, 3, 1)};
     oracle.halves->b.values()[4] = 0.1f;
     PlaneImage with_seeds = image_of("one", 0.5f);
@@ -40,13 +40,14 @@ TEST(CellStore, GivesBackEveryBitOfWhatItKept) {
     ASSERT_EQ(one.timing.passes.size(), 2u);
     EXPECT_EQ(one.timing.passes[1].pass, "ao");
     EXPECT_EQ(one.gbuffer_bytes_per_pixel, 12);
-    EXPECT_EQ(one.oracle_layers, -1);
+    EXPECT_FALSE(one.oracle.any());
     EXPECT_FALSE(one.halves);
     ASSERT_EQ(one.other_seeds.size(), 2u);
     EXPECT_EQ(one.other_seeds[0].values()[7], 0.75f);
     EXPECT_EQ(one.other_seeds[1].values()[7], 0.125f);
     EXPECT_TRUE(two.other_seeds.empty());
-    EXPECT_EQ(two.oracle_layers, 2);
+    EXPECT_EQ(two.oracle.layers, 2);
+    EXPECT_EQ(two.oracle.bounces, 3);
     ASSERT_TRUE(two.halves);
     EXPECT_EQ(two.halves->b.values()[4], 0.1f);
 }

@@ -39,9 +39,9 @@ DiskUse disk_use_of(const Experiment& experiment, bool write_frames) {
 TEST(DiskUse, CountsTruthsWithTheirHalvesAndVarianceForTheCache) {
     Experiment experiment = small_experiment();
     EXPECT_EQ(disk_use_of(experiment, true).cache, (full + limited) * 2 * 4);
-    experiment.oracle_layers = {1, 2, 0};
+    experiment.oracle_layers = {1, 0}, experiment.oracle_bounces = {1};
     EXPECT_EQ(disk_use_of(experiment, true).cache, (full + limited) * 2 * 4 + full * 3 * 2 * 4);
-    experiment.oracle_layers.clear();
+    experiment.oracle_layers.clear(), experiment.oracle_bounces.clear();
     experiment.scenes[0].paths.resize(1);
     experiment.scenes[0].paths[0].frames = 6;
     EXPECT_EQ(disk_use_of(experiment, true).cache, (full + limited) * 2 * 4 + full * 6 * 4);

@@ -1,5 +1,6 @@
 #include "experiments/experiment_file.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -110,6 +111,26 @@ TEST(ExperimentFile, TheTruthSpreadsItsRaysOverThePixelWhereItSaysSo) {
     const Experiment plain = parse(valid), spread = parse(valid + "[reference]\nantialias = true\n");
     EXPECT_FALSE(full_truth_settings(plain, plain.scenes[0]).antialias);
     EXPECT_TRUE(full_truth_settings(spread, spread.scenes[0]).antialias);
+}
+
+TEST(ExperimentFile, TheOracleHasFewerBouncesThanTheTruth) {
+    const auto with = [](const std::string& bounces, const std::string& planes) {
+        return fmt::format(
+            "planes = {}\noracle_bounces = {}\nmethods = [\"one_layer\"]\n[quantities]\nbounces = 4\n"
+            "[[scenes]]\nscene = \"cornell\"\n",
+            planes, bounces);
+    };
+    EXPECT_EQ(parse(with("[3, 1]", "[\"ao\", \"total\"]")).oracle_bounces, (std::vector{3, 1}));
+    const auto failure = [&](const std::string& bounces, const std::string& planes = "[\"indirect\"]") {
+        return parse_failure(with(bounces, planes));
+    };
+    EXPECT_THAT(failure("[1, 4]"), AllOf(HasSubstr("e.toml:2: oracle_bounces: holds 4"), HasSubstr("which are 4"),
+                                         HasSubstr("take fewer, or raise 'bounces' in [quantities]")));
+    EXPECT_THAT(failure("[0]"), HasSubstr("e.toml:2: oracle_bounces: holds 0, but must hold 1 to"));
+    EXPECT_THAT(failure("[1, 2, 1]"), HasSubstr("e.toml:2: oracle_bounces: holds 1 twice; remove one"));
+    EXPECT_THAT(failure("[1]", "[\"ao\", \"indirect.1\"]"),
+                AllOf(HasSubstr("e.toml:2: oracle_bounces: no plane of ao, indirect.1 has light of bounces"),
+                      HasSubstr("compare indirect, irradiance, reflection or total, or remove it")));
 }
 
 TEST(ExperimentFile, TakesMethodsFromFilesBesideIt) {

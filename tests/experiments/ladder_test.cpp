@@ -40,6 +40,22 @@ TEST(Ladder, ReadsItsRungsAndRefusesThoseThatAreNotCompared) {
     EXPECT_THAT(failure(experiment_text, "oracle = [0]", "oracle = [1]"), HasSubstr("oracle, all in view"));
 }
 
+TEST(Ladder, OraclesOfFewerBouncesAreRungsToo) {
+    const auto ladders = read_ladders(parse(R"(planes = ["indirect"]
+oracle_bounces = [1]
+methods = ["one_layer"]
+[quantities]
+bounces = 3
+[[scenes]]
+scene = "cornell"
+[[ladders]]
+plane = "indirect"
+rungs = ["oracle, 1 bounce", "one_layer"]
+)"));
+    ASSERT_EQ(ladders.size(), 1u);
+    EXPECT_EQ(ladders[0].rungs[0], "oracle, 1 bounce");
+}
+
 TEST(Ladder, OraclesAreRungsOfPathsToo) {
     const auto ladders = read_ladders(parse(experiment_text + "paths = true\n"));
     ASSERT_EQ(ladders.size(), 1u);

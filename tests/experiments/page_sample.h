@@ -97,7 +97,7 @@ inline RunResults full_sample(const std::filesystem::path& folder) {
         results.rows.push_back(swept);
     }
     ResultRow oracle = sample_row("front", "oracle, 1 layer", 0.01, 0.0);
-    oracle.oracle_layers = 1;
+    oracle.oracle.layers = 1;
     results.rows.push_back(oracle);
     for (const std::string method : {"one", "two"}) {
         ResultRow row = sample_row("", method, 0.07, 3.0);

@@ -82,10 +82,19 @@ TEST(ParameterEffects, NothingIsCarriedOnWhereAllIsTakenAway) {
 TEST(ParameterEffects, NothingIsFilteredOfFramesThatAreNotKept) {
     Method method;
     method.antialias = {.temporal = true, .alpha = 0.0f};
-    for (const char* name : {"antialias.clamp", "antialias.dilate", "antialias.lookup"})
+    for (const char* name : {"antialias.clamp", "antialias.reprojection", "antialias.dilate", "antialias.lookup"})
         EXPECT_THAT(reason_without_effect(method, name), HasSubstr("antialias.alpha = 0")) << name;
     for (const char* name : {"antialias.temporal", "antialias.alpha", "antialias.jitter_length"})
         EXPECT_THAT(reason_without_effect(method, name), IsEmpty()) << name << ": the view is moved all the same";
+}
+
+TEST(ParameterEffects, WhatIsNotFollowedIsLookedUpAtItsOwnPixel) {
+    Method method;
+    method.antialias = {.temporal = true, .reprojection = false};
+    for (const char* name : {"antialias.dilate", "antialias.lookup"})
+        EXPECT_THAT(reason_without_effect(method, name), HasSubstr("antialias.reprojection = false")) << name;
+    for (const char* name : {"antialias.reprojection", "antialias.clamp", "antialias.alpha"})
+        EXPECT_THAT(reason_without_effect(method, name), IsEmpty()) << name;
 }
 
 TEST(ParameterEffects, TheCoarsestLevelLeavesNoneToChoose) {

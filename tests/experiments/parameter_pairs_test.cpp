@@ -21,8 +21,11 @@ TEST(ParameterPairs, WhatIsRefusedBesideAnotherValueChangesNoPixel) {
         std::vector<std::string> beside;
     };
     const std::vector<Pair> named = {{"antialias.clamp", {"antialias.alpha=0"}},
+                                     {"antialias.reprojection", {"antialias.alpha=0"}},
                                      {"antialias.dilate", {"antialias.alpha=0"}},
                                      {"antialias.lookup", {"antialias.alpha=0"}},
+                                     {"antialias.dilate", {"antialias.reprojection=false"}},
+                                     {"antialias.lookup", {"antialias.reprojection=false"}},
                                      {"radiosity.mip_offset", {"radiosity.minimum_mip_level=5"}},
                                      {"radiosity.blur.monotonic", {"radiosity.blur.radius=1"}},
                                      {"ao.blur.monotonic", {"ao.blur.radius=1"}},

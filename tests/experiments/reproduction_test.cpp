@@ -24,6 +24,7 @@
 #include "rasterizer/passes.h"
 #include "scenes/builtin.h"
 #include "scenes/scene_error.h"
+#include "tests/experiments/sample_results.h"
 #include "tests/message_of.h"
 #include "tests/temporary_folder.h"
 
@@ -220,6 +221,20 @@ std::vector<Cell> sample_cells() {
 
 std::string png_of(const std::string& svg) { return rasterise_svg(svg, 1.0); }
 const std::string png_signature = "\x89PNG";
+
+TEST(MeasuredCells, OraclesOfBouncesAreACurveWithoutTimes) {
+    RunResults results;
+    results.rows = {sample_row("front", "one", 0.1, 2.0), sample_row("front", oracle_name_of_bounces(2), 0.05, 0.0)};
+    results.rows.back().oracle.bounces = 2;
+    const std::vector<Cell> cells = cells_of(results);
+    ASSERT_EQ(cells.size(), 2u);
+    EXPECT_EQ(attribute_of(cells[0], "curve"), "");
+    EXPECT_EQ(attribute_of(cells[1], "method"), "oracle, 2 bounces");
+    EXPECT_EQ(attribute_of(cells[1], "curve"), "oracle, bounces");
+    EXPECT_EQ(attribute_of(cells[1], "parameter"), "2");
+    EXPECT_EQ(measure_of(cells[0], "ms"), 2.0);
+    EXPECT_TRUE(std::isnan(measure_of(cells[1], "ms")));
+}
 
 TEST(Figures, CurvesAverageOverViewsAndAreWellFormed) {
     Figure figure;

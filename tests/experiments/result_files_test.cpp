@@ -121,6 +121,24 @@ TEST(ResultFiles, TellIntervalsRegionsStabilityAndFidelity) {
     EXPECT_EQ(json["seeds"]["mae_lower"], 0.25);
 }
 
+TEST(ResultFiles, TellOfOraclesWhatTheTruthWasLimitedTo) {
+    RunResults results = sample_results();
+    results.rows.resize(3);
+    results.rows[1].oracle.layers = 0, results.rows[2].oracle.bounces = 2;
+    const auto csv = read_csv(print_csv(results));
+    EXPECT_EQ(csv.at(0).at("oracle_layers") + csv.at(0).at("oracle_bounces"), "");
+    EXPECT_EQ(csv.at(1).at("oracle_layers"), "0");
+    EXPECT_EQ(csv.at(1).at("oracle_bounces"), "");
+    EXPECT_EQ(csv.at(2).at("oracle_layers"), "");
+    EXPECT_EQ(csv.at(2).at("oracle_bounces"), "2");
+    const nlohmann::json json = nlohmann::json::parse(print_json(results));
+    EXPECT_TRUE(json["rows"][0].contains("parameters"));
+    EXPECT_EQ(json["rows"][1]["oracle_layers"], 0);
+    EXPECT_FALSE(json["rows"][1].contains("oracle_bounces"));
+    EXPECT_EQ(json["rows"][2]["oracle_bounces"], 2);
+    EXPECT_FALSE(json["rows"][2].contains("oracle_layers") || json["rows"][2].contains("parameters"));
+}
+
 TEST(ResultsJson, HasALineForEachRowAndIsReadAsBefore) {
     RunResults results = sample_results();
     results.rows[1].regions = {{"border", 40, 0.04, 0.03, 0.05}};

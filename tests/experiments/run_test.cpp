@@ -29,7 +29,10 @@ resolution = [64, 36]
 methods = ["one_layer", "two_layers", {name = "few", base = "one_layer", sweep = {"ao.samples" = [4, 8]}}]
 path_tracer_samples = [2]
 oracle = [1]
+oracle_bounces = [1, 2]
 seeds = 3
+[quantities]
+bounces = 3
 [reference]
 samples = 16
 path_samples = 8
@@ -54,6 +57,8 @@ std::string text_of(const std::filesystem::path& file) {
     text << std::ifstream(file).rdbuf();
     return text.str();
 }
+
+bool is_oracle(const nlohmann::json& row) { return row.contains("oracle_layers") || row.contains("oracle_bounces"); }
 
 class Run : public testing::Test {
 protected:
@@ -89,10 +94,11 @@ TEST_F(Run, PrintsTableSummaryAndPathsAndListsTheSceneThatFailed) {
 TEST_F(Run, WritesARowForEveryCellOfTheSceneThatWorks) {
     const auto json = results("first");
     // ao has one truth, indirect two; four methods each; for either plane one point of the path tracer's curve and the
-    // oracle; then each plane and method along the path, and the oracle.
-    EXPECT_EQ(json["rows"].size(), 4u * (1 + 2) + 2u + 2u + 2u * (4u + 1u));
+    // oracle of one layer, and for indirect those of bounces; then each plane and method along the path, and the
+    // oracles.
+    EXPECT_EQ(json["rows"].size(), 4u * (1 + 2) + 2u + (2u + 2u) + 2u * (4u + 1u) + 2u);
     for (const auto& row : json["rows"]) {
-        if (row.contains("oracle_layers")) continue;  // takes no time
+        if (is_oracle(row)) continue;  // takes no time
         EXPECT_GT(row["milliseconds"]["median"], 0.0) << row.dump();
         if (!row.contains("path_tracer_samples")) continue;
         EXPECT_EQ(row["milliseconds"]["repetitions"], 2) << "timed as often as the methods";
@@ -132,6 +138,29 @@ TEST_F(Run, TheOracleKnowsBetterThanTheMethodsAndSweepsTellTheirPoints) {
     EXPECT_EQ(swept, (std::vector{4.0, 8.0}));
 }
 
+// It takes the samples of the truth and leaves light away: a pixel is nowhere brighter, and all that lacks is bias.
+TEST_F(Run, TheOracleOfFewerBouncesIsTheTruthLessTheLightOfFurtherOnes) {
+    const auto json = results("first");
+    for (const bool along_path : {false, true}) {
+        std::map<int, double> lacking;
+        for (const auto& row : json["rows"]) {
+            if (!row.contains("oracle_bounces") || row.contains("path") != along_path) continue;
+            EXPECT_EQ(row["plane"], "indirect");
+            EXPECT_EQ(row["truth"], "full") << "its light has no limit";
+            const int bounces = row["oracle_bounces"];
+            EXPECT_EQ(row["method"], fmt::format("oracle, {} bounce{}", bounces, bounces == 1 ? "" : "s"));
+            const double bias = row["measures"]["bias"], mae = row["measures"]["mae"];
+            // Sums of three bounces and of two, each rounded to float: 1e-7 of a value each, which bias takes off.
+            EXPECT_NEAR(mae, -bias, 1e-6 * row["measures"]["reference_mean"].get<double>()) << row.dump();
+            lacking[bounces] = -bias / row["measures"]["reference_mean"].get<double>();
+        }
+        ASSERT_EQ(lacking.size(), 2u);
+        EXPECT_GT(lacking.at(2), 0.02) << "the third bounce in a room that reflects half of its light";
+        EXPECT_GT(lacking.at(1), 2.0 * lacking.at(2));
+        EXPECT_LT(lacking.at(1), 0.8);
+    }
+}
+
 TEST_F(Run, APathHasAnErrorForEachFrameAFlickerBetweenThemAndPictures) {
     const auto json = results("first");
     int paths = 0;
@@ -142,7 +171,7 @@ TEST_F(Run, APathHasAnErrorForEachFrameAFlickerBetweenThemAndPictures) {
         EXPECT_DOUBLE_EQ(row["frames"][1]["time"], 0.25 + 1.0 / 30.0);
         EXPECT_TRUE(row["frames"][0]["flicker"].is_null()) << "nothing came before the first frame";
         EXPECT_GT(row["stability"]["method_warping"], 0.0);
-        if (row.contains("oracle_layers")) {
+        if (is_oracle(row)) {
             EXPECT_EQ(row["milliseconds"]["median"], 0.0) << "no program can be it";
         } else {
             EXPECT_GT(row["frames"][2]["rmse"], 0.0);
@@ -150,7 +179,7 @@ TEST_F(Run, APathHasAnErrorForEachFrameAFlickerBetweenThemAndPictures) {
         }
         EXPECT_TRUE(row["regions"].contains("border"));
     }
-    EXPECT_EQ(paths, 2 * (4 + 1)) << "methods and the oracle";
+    EXPECT_EQ(paths, 2 * (4 + 1) + 2) << "methods and the oracles";
     int pictures = 0;
     for (const auto& entry : std::filesystem::directory_iterator(folder_->path / "first/pictures"))
         pictures += entry.path().extension() == ".jpg";
@@ -207,7 +236,7 @@ TEST_F(Run, IsRepeatedBitForBitFromItsResults) {
     const ProgramRun again = run_plumbline({"run", record.string(), "--output", (folder_->path / "again").string(),
                                             "--cache-dir", (folder_->path / "another cache").string()});
     EXPECT_EQ(again.exit_code, 1) << "the scene that does not exist still does not\n" << again.output;
-    EXPECT_THAT(again.output, HasSubstr("26 of 26 rows are as recorded, bit for bit"));
+    EXPECT_THAT(again.output, HasSubstr("30 of 30 rows are as recorded, bit for bit"));
 
     // One thing of a row each, but for one whose time alone is another.
     auto forged = results("first");
@@ -226,7 +255,7 @@ TEST_F(Run, IsRepeatedBitForBitFromItsResults) {
                        "--cache-dir", (folder_->path / "cache").string()});
     EXPECT_EQ(apart.exit_code, 1);
     EXPECT_THAT(apart.output,
-                AllOf(HasSubstr("20 of 26 rows"), HasSubstr("measures.mse was 0.125"),
+                AllOf(HasSubstr("24 of 30 rows"), HasSubstr("measures.mse was 0.125"),
                       HasSubstr("unbiased_mse.upper was 0.125"), HasSubstr("border.lower was 0.125"),
                       HasSubstr("seeds.unbiased_mse_lower was 0.125"), HasSubstr("frames.1.flicker was 0.125"),
                       HasSubstr("stability.flicker_upper was 0.125")));
@@ -268,7 +297,8 @@ TEST_F(Run, GoesOnWithTheCellsOfARunThatWasKilled) {
     std::ignore = std::system(command.c_str());
     ASSERT_TRUE(std::filesystem::exists(out / "cells")) << "the run was not killed in its middle";
     EXPECT_FALSE(std::filesystem::exists(out / "results.json"));
-    std::ofstream(out / "cells" / ".half.1-1.tmp.exr");  // as a kill amid writing leaves one
+    std::ofstream half_written(out / "cells" / ".half.1-1.tmp.exr");  // as a kill amid writing leaves one
+    half_written.close();
     const std::vector<double> marked = mark_cells(out / "cells");
     ASSERT_FALSE(marked.empty());
     run_it("killed");
@@ -412,7 +442,7 @@ TEST_F(Run, WritesFramesPicturesAndThePage) {
 
 TEST_F(Run, ASecondRunReadsItsTruthsAndFindsTheSameErrors) {
     const ProgramRun second = run_it("second");
-    EXPECT_THAT(second.output, HasSubstr("9 truths (9 of them from the cache)"));
+    EXPECT_THAT(second.output, HasSubstr("17 truths (17 of them from the cache)"));
     const auto a = results("first"), b = results("second");
     ASSERT_EQ(a["rows"].size(), b["rows"].size());
     for (std::size_t i = 0; i < a["rows"].size(); ++i) {
@@ -425,7 +455,7 @@ TEST_F(Run, ADamagedCacheIsReportedAndRepaired) {
         if (entry.path().extension() == ".exr") std::filesystem::resize_file(entry.path(), 1000);
     }
     const ProgramRun run = run_it("third");
-    EXPECT_THAT(run.output, AllOf(HasSubstr("rendering it again"), HasSubstr("9 truths (0 of them from the cache)")));
+    EXPECT_THAT(run.output, AllOf(HasSubstr("rendering it again"), HasSubstr("17 truths (0 of them from the cache)")));
     EXPECT_EQ(results("first")["rows"][0]["measures"], results("third")["rows"][0]["measures"]);
 }
 

@@ -9,7 +9,7 @@ namespace plumb {
 
 inline ResultRow sample_oracle(const std::string& view, int layers, double rmse) {
     ResultRow row = sample_row(view, oracle_name(layers), rmse, 0.0);
-    row.oracle_layers = layers, row.timing = {};
+    row.oracle.layers = layers, row.timing = {};
     return row;
 }
 

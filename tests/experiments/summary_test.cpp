@@ -86,7 +86,7 @@ TEST(Summary, SetsEachOracleAgainstTheOneWithFewerLayers) {
                                     HasSubstr("that of 'oracle, 2 layers', over 2 views")));
     EXPECT_THAT(sentences[4], AllOf(HasSubstr("along camera paths: the best possible"),
                                     HasSubstr(", its flicker 0.50 times"), HasSubstr("over 3 paths")));
-    for (ResultRow& row : results.rows) row.measured = row.oracle_layers != 1;
+    for (ResultRow& row : results.rows) row.measured = row.oracle.layers != 1;
     EXPECT_EQ(summarise(results)[1],
               "In principle, ao: no view allows a statement about 'oracle, 2 layers' against 'oracle, 1 layer'.");
 }

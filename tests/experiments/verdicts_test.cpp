@@ -177,7 +177,7 @@ TEST(Verdicts, StarsDoNotCoverThePathTracerAndTheOracle) {
     rows.push_back(sample_row("front", "path tracer, 4 spp", 0.9, 1.0));
     rows.back().path_tracer_samples = 4;
     rows.push_back(sample_row("front", "oracle", 0.8, 1.0));
-    rows.back().oracle_layers = 2;
+    rows.back().oracle.layers = 2;
     EXPECT_NEAR(*verdict_of(limit_of(ThresholdKind::error, "*", 1.0), rows).value.value, 0.2, 1e-12);
     EXPECT_NEAR(*verdict_of(limit_of(ThresholdKind::error, "path tracer, 4 spp", 1.0), rows).value.value, 0.9, 1e-12);
 }

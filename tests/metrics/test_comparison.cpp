@@ -27,9 +27,10 @@ TEST(Comparison, MeasuresHaveAFixedOrderAndNamesThatThresholdsCanRelyOn) {
     EXPECT_THAT(
         names, ElementsAre("mae", "mse", "rmse", "bias", "relative_mse_pbrt", "relative_mse_tev", "relative_mse_falcor",
                            "psnr", "ssim", "ms_ssim", "flip", "flip_first_exposure", "flip_last_exposure", "median",
-                           "p95", "p99", "maximum", "data_range", "values", "left_out", "unbiased_mse", "unbiased_rmse",
-                           "unbiased_relative_mse_pbrt", "unbiased_relative_mse_tev", "unbiased_relative_mse_falcor",
-                           "unbiased_psnr", "reference_noise_mse", "noise_ratio", "trustworthy"));
+                           "p95", "p99", "maximum", "data_range", "reference_mean", "values", "left_out",
+                           "unbiased_mse", "unbiased_rmse", "unbiased_relative_mse_pbrt", "unbiased_relative_mse_tev",
+                           "unbiased_relative_mse_falcor", "unbiased_psnr", "reference_noise_mse", "noise_ratio",
+                           "trustworthy"));
 }
 
 TEST(Comparison, TellsIntervalsOfAllThatSaysHowFarImagesAreApart) {

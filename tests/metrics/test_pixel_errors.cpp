@@ -71,6 +71,7 @@ TEST(PixelErrors, MatchFourValuesComputedByHand) {
     EXPECT_NEAR(errors.mse, 5.25 / 4, rounding);
     EXPECT_NEAR(errors.rmse, std::sqrt(1.3125), rounding);
     EXPECT_NEAR(errors.bias, 1.5 / 4, rounding);
+    EXPECT_NEAR(errors.reference_mean, 3.25 / 4, rounding);
     EXPECT_NEAR(errors.relative_mse_pbrt, (0.25 / (1.01 * 1.01) + 1 / (2.01 * 2.01) + 0 + 4 / (0.01 * 0.01)) / 4,
                 40000 * rounding);
     EXPECT_NEAR(errors.relative_mse_tev, (0.25 / 1.01 + 1 / 4.01 + 0 + 4 / 0.01) / 4, 400 * rounding);

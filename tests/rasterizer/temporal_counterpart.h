@@ -242,15 +242,18 @@ inline Resolved resolve(const RenderedFrame& now, const RenderedFrame* before, c
                     if (settings.dilate && depth.at(p.x, p.y) < depth.at(surface.x, surface.y)) surface = p;
                 }
             }
-            const std::optional<SurfacePoint> point = surface_point(now, surface.x, surface.y);
-            // The background is seen in the same direction; a kilometre and more beyond the eye stands for it.
-            const glm::dvec3 direction = ray_through(now.view, surface.x + 0.5, surface.y + 0.5);
-            const glm::dvec3 world = point ? point->before : eye_of(before->view) + 1e6 * direction;
-            const glm::dvec3 seen = seen_at(before->view, world);
-            if (seen.z <= 0.0) continue;
-            const glm::dvec2 then = glm::dvec2(seen) + glm::dvec2(before->view.offset());
-            const glm::dvec2 here = glm::dvec2(surface) + 0.5 + glm::dvec2(now.view.offset());
-            const glm::dvec2 place = glm::dvec2(x, y) + 0.5 + then - here + doubt_of_place;
+            glm::dvec2 place = glm::dvec2(x, y) + 0.5;
+            if (settings.reprojection) {
+                const std::optional<SurfacePoint> point = surface_point(now, surface.x, surface.y);
+                // The background is seen in the same direction; a kilometre and more beyond the eye stands for it.
+                const glm::dvec3 direction = ray_through(now.view, surface.x + 0.5, surface.y + 0.5);
+                const glm::dvec3 world = point ? point->before : eye_of(before->view) + 1e6 * direction;
+                const glm::dvec3 seen = seen_at(before->view, world);
+                if (seen.z <= 0.0) continue;
+                const glm::dvec2 then = glm::dvec2(seen) + glm::dvec2(before->view.offset());
+                const glm::dvec2 here = glm::dvec2(surface) + 0.5 + glm::dvec2(now.view.offset());
+                place += then - here + doubt_of_place;
+            }
             if (place.x < 0.0 || place.y < 0.0 || place.x > width || place.y > height) continue;
             glm::dvec3 kept = looked_up(settings.lookup, history->colour, place);
             if (settings.clamp) kept = glm::clamp(kept, least, greatest);
