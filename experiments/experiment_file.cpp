@@ -102,6 +102,14 @@ void read_reference(ConfigReader& reader, Experiment& experiment) {
     reference.finish();
 }
 
+// Rows are told apart by what is listed.
+void refuse_twice(ConfigReader& reader, const char* key, const std::vector<int>& values) {
+    std::set<int> seen;
+    for (const int value : values) {
+        if (!seen.insert(value).second) reader.fail(key, fmt::format("holds {} twice; remove one", value));
+    }
+}
+
 void read_timing(ConfigReader& reader, Experiment& experiment) {
     ConfigReader timing = reader.table("timing");
     experiment.timing.warm_up = timing.integer("warm_up", experiment.timing.warm_up, 0, 1000);
@@ -114,11 +122,14 @@ void read_timing(ConfigReader& reader, Experiment& experiment) {
         if (samples % 2 != 0)
             reader.fail("path_tracer_samples", fmt::format("holds {}, but must hold even numbers", samples));
     }
+    refuse_twice(reader, "path_tracer_samples", experiment.path_tracer_samples);
 }
 
 void read_oracle(ConfigReader& reader, Experiment& experiment) {
     experiment.oracle_layers = reader.integers("oracle", {}, 0, 16);
+    refuse_twice(reader, "oracle", experiment.oracle_layers);
     experiment.oracle_bounces = reader.integers("oracle_bounces", {}, 1, most_diffuse_bounces);
+    refuse_twice(reader, "oracle_bounces", experiment.oracle_bounces);
     if (experiment.oracle_bounces.empty()) return;
     if (std::ranges::none_of(experiment.planes, has_light_of_bounces)) {
         reader.fail("oracle_bounces",
@@ -126,7 +137,6 @@ void read_oracle(ConfigReader& reader, Experiment& experiment) {
                                 "total, or remove it",
                                 fmt::join(experiment.planes, ", ")));
     }
-    std::set<int> seen;
     for (const int bounces : experiment.oracle_bounces) {
         if (bounces >= experiment.quantities.bounces) {
             reader.fail("oracle_bounces",
@@ -134,8 +144,6 @@ void read_oracle(ConfigReader& reader, Experiment& experiment) {
                                     "raise 'bounces' in [quantities]",
                                     bounces, experiment.quantities.bounces));
         }
-        if (!seen.insert(bounces).second)
-            reader.fail("oracle_bounces", fmt::format("holds {} twice; remove one", bounces));
     }
 }
 

@@ -133,6 +133,15 @@ TEST(ExperimentFile, TheOracleHasFewerBouncesThanTheTruth) {
                       HasSubstr("compare indirect, irradiance, reflection or total, or remove it")));
 }
 
+TEST(ExperimentFile, RowsAreNotListedTwice) {
+    const auto failure = [](const std::string& line) {
+        return parse_failure(line + "\nmethods = [\"one_layer\"]\n[[scenes]]\nscene = \"cornell\"\n");
+    };
+    EXPECT_THAT(failure("oracle = [1, 2, 1]"), HasSubstr("e.toml:1: oracle: holds 1 twice; remove one"));
+    EXPECT_THAT(failure("path_tracer_samples = [4, 4]"),
+                HasSubstr("e.toml:1: path_tracer_samples: holds 4 twice; remove one"));
+}
+
 TEST(ExperimentFile, TakesMethodsFromFilesBesideIt) {
     const TemporaryFolder folder;
     Method tuned = load_method("two_layers");
