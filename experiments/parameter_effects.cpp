@@ -191,8 +191,7 @@ std::string light_reason(const Method& method, std::string_view name, AskedPlane
     if (name == "gbuffer.radiance_format" && method.direct.source == SourceOfStage::truth && !reads_probe(method) &&
         !chain_follows && !(radiosity.enabled && (radiosity.carry || radiosity.bounces > 1))) {
         return "direct.source = \"truth\", no later bounce is gathered, and the chain of reflections is only wider "
-               "with "
-               "\"rgba32f\"";
+               "with \"rgba32f\"";
     }
     return "";
 }

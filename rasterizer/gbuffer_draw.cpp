@@ -19,18 +19,21 @@ DepthTest::DepthTest(DepthMapping mapping)
     if (mapping == DepthMapping::standard) defines.emplace_back("STANDARD_DEPTH", "1");
 }
 
-void clear_gbuffer(const GlFramebuffer& target, std::span<const GlAttachment> colours, const DepthTest& test) {
+void clear_gbuffer(const GlFramebuffer& target, const DepthTest& test) {
     const GladGLContext& gl = target.context().gl;
     constexpr float infinity = std::numeric_limits<float>::infinity();
     constexpr std::array<float, 4> nothing{}, infinitely_far{infinity, infinity, infinity, infinity};
     constexpr std::array<GLuint, 4> no_number{};
     target.bind();
-    for (GLint i = 0; i < static_cast<GLint>(colours.size()); ++i) {
-        if (holds_integers(colours[static_cast<std::size_t>(i)].texture->format())) {
-            gl.ClearNamedFramebufferuiv(target.id(), GL_COLOR, i, no_number.data());
+    GLint location = 0;
+    for (const GLenum format : target.colour_formats()) {
+        if (holds_integers(format)) {
+            gl.ClearNamedFramebufferuiv(target.id(), GL_COLOR, location, no_number.data());
         } else {
-            gl.ClearNamedFramebufferfv(target.id(), GL_COLOR, i, i == 0 ? infinitely_far.data() : nothing.data());
+            gl.ClearNamedFramebufferfv(target.id(), GL_COLOR, location,
+                                       location == 0 ? infinitely_far.data() : nothing.data());
         }
+        ++location;
     }
     gl.ClearNamedFramebufferfv(target.id(), GL_DEPTH, 0, &test.farthest);
 }

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -22,8 +21,8 @@ struct DepthTest {
     ShaderDefines defines;
 };
 
-// Binds and clears; the first of its `colours` is the depth plane.
-void clear_gbuffer(const GlFramebuffer& target, std::span<const GlAttachment> colours, const DepthTest& test);
+// Binds and clears; the first of its colours is the depth plane.
+void clear_gbuffer(const GlFramebuffer& target, const DepthTest& test);
 
 // The programs of gbuffer.vert, .geom and .frag for every variant of the scene's materials.
 class GBufferDraw {

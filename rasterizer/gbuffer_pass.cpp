@@ -48,7 +48,7 @@ GBufferPass::GBufferPass(const PassResources& resources, int layer)
 void GBufferPass::execute(const PassFrame& frame) {
     const GladGLContext& gl = context_.gl;
     if (history_ && layer_ == 0) history_->trade_places();
-    clear_gbuffer(target_, targets_.colours, test_);
+    clear_gbuffer(target_, test_);
     gl.Enable(GL_DEPTH_TEST);
     gl.DepthFunc(test_.nearer);
     if (layer_ > 0) {

@@ -24,7 +24,7 @@ constexpr std::array<GBufferPlane, 9> gbuffer_planes = {{{"depth", nullptr},
                                                          {"specular", "WRITE_SPECULAR"},
                                                          {"roughness", "WRITE_ROUGHNESS"},
                                                          {"emission", "WRITE_EMISSION"},
-                                                         {"moving_instance", "WRITE_MOVING_INSTANCE"},
+                                                         {moving_instance_plane, "WRITE_MOVING_INSTANCE"},
                                                          {"camera_position", "WRITE_POSITION"}}};
 
 GLenum format_of(std::string_view plane, const Scene& scene, const Method& method) {
@@ -33,7 +33,7 @@ GLenum format_of(std::string_view plane, const Scene& scene, const Method& metho
     if (plane == "emission") return emission_format(scene);
     if (plane == "roughness") return GL_R16F;
     if (plane == "camera_position") return method.gbuffer.position == PositionSource::stored ? GL_RGBA32F : GL_RGBA16F;
-    return plane == "moving_instance" ? moving_instance_format(scene) : GL_RGBA16F;
+    return plane == moving_instance_plane ? moving_instance_format(scene) : GL_RGBA16F;
 }
 
 bool exists(std::string_view plane, const Method& method) {

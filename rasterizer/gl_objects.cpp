@@ -218,6 +218,7 @@ GlFramebuffer::GlFramebuffer(GlContext& context, std::span<const GlAttachment> c
         const GLenum point = GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(draw_buffers.size());
         attach(point, colour);
         draw_buffers.push_back(point);
+        colour_formats_.push_back(colour.texture->format());
     }
     if (depth.texture != nullptr) {
         const bool has_stencil = depth.texture->format() == GL_DEPTH32F_STENCIL8;

@@ -104,6 +104,7 @@ public:
     GLuint id() const;
     int width() const { return width_; }
     int height() const { return height_; }
+    const std::vector<GLenum>& colour_formats() const { return colour_formats_; }
 
 private:
     struct Trading {
@@ -114,6 +115,7 @@ private:
     void attach(GLenum point, const GlAttachment& attachment);
 
     mutable std::vector<Trading> trading_;
+    std::vector<GLenum> colour_formats_;  // by output location
     int width_ = 0, height_ = 0;
 };
 

@@ -13,6 +13,8 @@ std::size_t count_of_moving(const Scene& scene) {
 
 }  // namespace
 
+bool anything_moves(const Scene& scene) { return std::ranges::any_of(scene.instances, &Instance::moves); }
+
 std::vector<int> moving_instance_numbers(const Scene& scene) {
     std::vector<int> numbers;
     int moving = 0;

@@ -11,6 +11,10 @@
 
 namespace plumb {
 
+// The plane of the numbers that moving_instance_numbers() gives, for each layer.
+inline constexpr const char* moving_instance_plane = "moving_instance";
+
+bool anything_moves(const Scene& scene);
 // The number of each instance of the scene among those that move, counted from 1; 0 of what stands still.
 std::vector<int> moving_instance_numbers(const Scene& scene);
 // The format of a plane of such numbers: with 16 bits, or 32 where more instances move.

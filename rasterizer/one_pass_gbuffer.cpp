@@ -71,7 +71,7 @@ void OnePassGBuffer::execute(const PassFrame& frame) {
     gl.Enable(GL_DEPTH_TEST);
     gl.DepthFunc(test_.nearer);
     if (!has_history) draw_comparison(frustum);
-    clear_gbuffer(layers_target_, targets_.colours, test_);
+    clear_gbuffer(layers_target_, test_);
     history_.before().bind(SceneGeometry::first_free_texture_unit);
     draw_.set("minimum_separation", separation_in_metres(settings_, frame.view.camera()));
     if (settings_.generation == LayerGeneration::reproject) draw_.set("follow_motion", has_history ? 1 : 0);
@@ -82,7 +82,7 @@ void OnePassGBuffer::execute(const PassFrame& frame) {
 }
 
 void OnePassGBuffer::draw_comparison(const Frustum& frustum) const {
-    clear_gbuffer(comparison_target_, std::array{GlAttachment{&history_.before(), comparison_layer()}}, test_);
+    clear_gbuffer(comparison_target_, test_);
     comparison_draw_.draw(frustum);
 }
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "rasterizer/instance_motion.h"
 #include "rasterizer/normal_encoding.h"
 #include "rasterizer/texture_transfer.h"
 
@@ -9,8 +10,8 @@ namespace plumb {
 namespace {
 
 int channels_of_plane(const std::string& base) {
-    if (base == "depth" || base == "ao" || base == "roughness" || base == "confidence" || base == "moving_instance" ||
-        base.ends_with(".history_weight"))
+    if (base == "depth" || base == "ao" || base == "roughness" || base == "confidence" ||
+        base == moving_instance_plane || base.ends_with(".history_weight"))
         return 1;
     if (base == "motion") return 2;
     return 3;

@@ -1,15 +1,8 @@
 #include "rasterizer/reprojection.h"
 
-#include <algorithm>
+#include "rasterizer/instance_motion.h"
 
 namespace plumb {
-namespace {
-
-constexpr const char* moving_instance_plane = "moving_instance";
-
-bool anything_moves(const Scene& scene) { return std::ranges::any_of(scene.instances, &Instance::moves); }
-
-}  // namespace
 
 Reprojection::Reprojection(const PassResources& resources, GLuint unit) : unit_(unit) {
     if (anything_moves(resources.scene)) moving_instance_ = &resources.planes.get(moving_instance_plane);

@@ -14,11 +14,9 @@
 namespace plumb {
 namespace {
 
-constexpr std::string_view moving_instance = "moving_instance";
-
 GLenum format_of(std::string_view plane, const Scene& scene) {
     if (plane == "depth") return GL_R32F;
-    if (plane == moving_instance) return moving_instance_format(scene);
+    if (plane == moving_instance_plane) return moving_instance_format(scene);
     if (plane == "normal") return GL_RG16;
     return GL_RGBA32F;  // as it comes: the point is to have no error of one's own
 }
@@ -65,7 +63,8 @@ TruthPass::TruthPass(const PassResources& resources, std::vector<std::string> pl
         }
         const GlTexture& texture = resources.planes.get(base);
         if (layer >= texture.layers()) continue;
-        uploads_.push_back({layer_prefix(layer) + (base == moving_instance ? "instance" : base), &texture, layer});
+        uploads_.push_back(
+            {layer_prefix(layer) + (base == moving_instance_plane ? "instance" : base), &texture, layer});
     }
 }
 
@@ -99,7 +98,7 @@ PassDeclaration declare_true_gbuffer(const Scene& scene, const Method& method) {
     PassDeclaration pass;
     pass.name = "gbuffer.truth";
     std::vector<std::string> of_each_layer{"depth", "normal", "albedo", std::string(gbuffer_history)};
-    if (std::ranges::any_of(scene.instances, &Instance::moves)) of_each_layer.emplace_back(moving_instance);
+    if (anything_moves(scene)) of_each_layer.emplace_back(moving_instance_plane);
     pass.outputs = of_each_layer;
     pass.outputs.emplace_back("emission");
     const auto first_layer_outputs = static_cast<std::ptrdiff_t>(pass.outputs.size());
